@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "draping/measure.h"
+#include "draping/state.h"
+#include "patterns/triangulate.h"
+
+#include <functional>
+
+namespace toile {
+
+enum class DrapeStatus { converged, stalled, limit, too_small, slid_off };
+
+/// The word of the report: "converged", "stalled", "limit", "too_small", "slid_off".
+const char* to_string(DrapeStatus status);
+
+struct DrapeProgress {
+    std::string stage;          ///< "place", "sew", "grow", "settle", ...
+    int level = 0, levels = 1;
+    double residual = 0;        ///< as in DrapeResult; infinity while unknown
+    double done = 0;            ///< share of the whole, [0, 1], never decreasing
+    double seconds_left = 0;    ///< estimate; infinity while unknown
+};
+
+struct DrapeOptions {
+    double tolerance = 1e-3;        ///< residual to reach; see DrapeResult::residual
+    double clearance = 0.5e-3;      ///< m, distance from the body below which contact acts
+    double friction = -1;           ///< Coulomb coefficient on the body; negative: the fabric's
+    double gravity = 9.81;          ///< m/s2, along -y
+    int max_iterations = 2000;      ///< Newton iterations on all levels together
+    double max_seconds = 1e9;       ///< wall time after which the state reached is returned with status limit
+    std::vector<std::string> hold;  ///< labels whose hooks stay on to the end
+    Points from;                    ///< when not empty: node positions of the closed garment to start from
+    /// Called often (at least every two seconds); returns false to stop with the state reached.
+    std::function<bool(const DrapeProgress&)> progress;
+};
+
+struct LevelReport {
+    double edge_length = 0;
+    int vertices = 0;
+    int iterations = 0;      ///< Newton iterations
+    int factorisations = 0;
+    double seconds = 0;
+};
+
+struct StageSeconds {
+    std::string stage;
+    double seconds = 0;
+};
+
+struct BarrierReport {
+    double distance = 0;  ///< m, below which contact acts
+    double stiffness = 0; ///< Pa/m: pressure per depth below `distance` near it
+};
+
+/// A drape and by how much it met each promise.
+struct DrapeResult {
+    Garment garment;   ///< finest level, seams closed
+    State state;       ///< its node positions
+    DrapeStatus status = DrapeStatus::stalled;
+    std::string where; ///< what blocked, slid or was too small, and its place on the garment; empty when converged
+    /// Largest over nodes of the distance between the non-contact force and what contact can answer, over
+    /// max(node's weight, a tenth of the mean node's weight).
+    double residual = 0;
+    double tolerance = 0;
+    double friction = 0;
+    BarrierReport barrier;
+    std::vector<LevelReport> levels;
+    std::vector<StageSeconds> seconds;
+    std::vector<std::string> decisions; ///< what was modelled or left out, with the measure that justified it
+    std::vector<std::string> warnings;
+};
+
+/// Sews and drapes: place, sew, weld, grow, settle and refine on every level from coarse to fine, prove.
+/// `fabrics` has one entry per panel. Throws std::runtime_error only for input that check() would have refused.
+DrapeResult drape(const Pattern& pattern, const FlatPattern& flat, const Avatar& avatar, const PanelFabrics& fabrics,
+                  const DrapeOptions& options);
+
+} // namespace toile

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace toile {
+
+/// What a cloth weighs and resists, per area or length, in its grain directions. SI units.
+struct Fabric {
+    std::string name;
+    double density = 0;        ///< kg/m2
+    double stretch_warp = 0;   ///< N/m
+    double stretch_weft = 0;   ///< N/m
+    double poisson = 0;        ///< major Poisson ratio: contraction of the weft under warp tension, [0, 0.5)
+    double shear = 0;          ///< N/m per rad of shear angle
+    double bend_warp = 0;      ///< N m, resistance to curving a warp yarn
+    double bend_weft = 0;      ///< N m
+    double bend_twist = 0;     ///< N m
+    double bend_poisson = 0;   ///< coupling of the two curvatures, [0, 0.5)
+    double compression = 0.1;  ///< stiffness under compression, as a share of that under tension, (0, 1]
+    double thickness = 0;      ///< m
+    double friction = 0;       ///< Coulomb coefficient on the body
+    double limit_warp = 0;     ///< largest stretch, e.g. 0.01
+    double limit_weft = 0;
+    double limit_shear = 0;    ///< locking angle of shear, rad
+    std::string source;        ///< where the figures come from
+};
+
+/// Presets by name: poplin denim silk wool linen leather jersey rib.
+const std::vector<Fabric>& fabric_presets();
+
+/// Throws std::invalid_argument that lists the names when there is no such preset.
+const Fabric& fabric_preset(const std::string& name);
+
+} // namespace toile

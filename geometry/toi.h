@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// Time of impact of two moving simplices, by additive continuous collision detection.
+// Li, Kaufman, Jiang: Codimensional Incremental Potential Contact, 2021 (section 5, ACCD).
+
+#include "geometry/types.h"
+
+namespace toile {
+
+/// Four points at the start of a step and how far each moves during it.
+struct Motion {
+    std::array<Vec3, 4> x;
+    std::array<Vec3, 4> dx;
+};
+
+struct ToiOptions {
+    double keep = 0.1;       ///< fraction of the starting distance (less min_distance) to be kept, in (0, 1)
+    double min_distance = 0; ///< metres; the pair never comes nearer than this
+    int max_iterations = 10000;
+};
+
+/// Largest t in [0, 1] such that moving by t * dx keeps the pair's distance above
+/// min_distance + keep * (start distance - min_distance) all the way. Conservative: never later than the truth.
+/// 0 when the pair starts at or below min_distance.
+double time_of_impact_point_triangle(const Motion& m, const ToiOptions& options); ///< x = p, a, b, c
+double time_of_impact_edge_edge(const Motion& m, const ToiOptions& options);      ///< x = a0, a1, b0, b1
+
+} // namespace toile

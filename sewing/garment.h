@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// The garment as one cloth: cut vertices that know their panel, nodes in space that seams share.
+
+#include "geometry/edges.h"
+#include "patterns/triangulate.h"
+
+namespace toile {
+
+/// What the cloth wants to be: per triangle its two edge vectors flat, per edge the angle it wants to be bent
+/// by. Not a rest position per vertex: a moulded cup or an eased seam has none.
+struct RestShape {
+    std::vector<Mat2> edges;    ///< columns: corner 1 - corner 0, corner 2 - corner 0; rows: weft, warp; metres
+    std::vector<double> angles; ///< rad, one per entry of Garment::edges; 0 is flat
+};
+
+/// A zero-rest-length spring from node a to the point (1 - r) b[0] + r b[1].
+struct Stitch {
+    int a = 0;
+    std::array<int, 2> b{};
+    double r = 0;
+    int seam = 0;
+    double length = 0; ///< metres of seam that the stitch stands for
+};
+
+/// Nodes along a stretch of cut border, kept by name: what hooks, pins, elastics and landmarks refer to.
+struct BorderLine {
+    std::string label;
+    int panel = 0, edge = 0;
+    std::vector<int> vertices; ///< in order along the edge
+};
+
+struct Garment {
+    // The cut cloth, by vertex and triangle.
+    std::vector<Vec2> uv;               ///< grain coordinates (weft, warp) in metres
+    std::vector<int> panel_of_vertex;
+    std::vector<Triangle> triangles;    ///< over vertices; front is the fabric's right side
+    std::vector<int> panel_of_triangle;
+    std::vector<std::string> panel_names;
+    std::vector<std::string> panel_fabrics; ///< empty: the garment's
+    std::vector<int> panel_layers;
+    RestShape rest;
+
+    // The cloth in space, by node.
+    std::vector<int> node_of_vertex;
+    int node_count = 0;
+    EdgeTable edges;                    ///< over nodes
+    std::vector<Stitch> stitches;       ///< open seams, over nodes
+    std::vector<bool> seam_edge;        ///< per edge: lies on a seam (closed or open) or dart
+    std::vector<bool> eased_triangle;   ///< per triangle: touches a seam whose sides differ by more than 2 %
+    std::vector<BorderLine> borders;    ///< every outline edge of every panel
+
+    /// Triangle t over nodes.
+    Triangle nodes(int t) const {
+        const Triangle& v = triangles[t];
+        return {node_of_vertex[v[0]], node_of_vertex[v[1]], node_of_vertex[v[2]]};
+    }
+};
+
+/// The garment of one level, every seam open: one node per vertex, stitches across the seams.
+Garment sew(const Pattern& pattern, const FlatLevel& flat);
+
+/// The garment with its stitches closed: stitched nodes become one. Stitches to the inside of an edge
+/// (0 < r < 1) stay. `node_map`, when given, receives the new node of every old node.
+Garment close_seams(const Garment& garment, std::vector<int>* node_map = nullptr);
+
+/// Triangles over nodes with the given positions.
+std::vector<Triangle> node_triangles(const Garment& garment);
+
+} // namespace toile

@@ -4,6 +4,7 @@
 // The vocabulary of points and triangles. SI units everywhere: metres, radians.
 
 #include <Eigen/Core>
+#include <Eigen/Geometry> // cross(): with Core alone it compiles and fails to link
 
 #include <array>
 #include <vector>

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/intersections.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Intersections_3/Point_3_Segment_3.h>
+#include <CGAL/Intersections_3/Point_3_Triangle_3.h>
+#include <CGAL/Intersections_3/Segment_3_Segment_3.h>
+#include <CGAL/Intersections_3/Segment_3_Triangle_3.h>
+#include <CGAL/Intersections_3/Triangle_3_Triangle_3.h>
+#include <CGAL/box_intersection_d.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <variant>
+
+namespace toile {
+
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Segment = Kernel::Segment_3;
+using Face = Kernel::Triangle_3;
+using Shape = std::variant<Point, Segment, Face>;
+using Pairs = std::vector<std::array<int, 2>>;
+
+Point to_cgal(const Vec3& p) { return {p[0], p[1], p[2]}; }
+
+// What two or three points span: CGAL's predicates require that a segment and a triangle are not degenerate.
+Shape span(const Point& a, const Point& b) {
+    if (a == b) return a;
+    return Segment(a, b);
+}
+
+Shape span(const Point& a, const Point& b, const Point& c) {
+    if (!CGAL::collinear(a, b, c)) return Face(a, b, c);
+    const auto ends = std::minmax({a, b, c}, [](const Point& p, const Point& q) { return p < q; });
+    return span(ends.first, ends.second);
+}
+
+bool meet(const Point& a, const Point& b) { return a == b; }
+template <class A, class B> bool meet(const A& a, const B& b) { return CGAL::do_intersect(a, b); }
+
+bool meet_shapes(const Shape& a, const Shape& b) {
+    return std::visit([](const auto& s, const auto& t) { return meet(s, t); }, a, b);
+}
+
+struct TriangleBox {
+    using NT = double;
+    using ID = std::size_t;
+    double low[3], high[3];
+    int triangle;
+    ID unique; // boxes of one id are never reported, not even when they come from different sets
+
+    static int dimension() { return 3; }
+    ID id() const { return unique; }
+    double min_coord(int d) const { return low[d]; }
+    double max_coord(int d) const { return high[d]; }
+};
+
+std::vector<TriangleBox> boxes_of(const TriMesh& mesh, std::size_t first_id) {
+    std::vector<TriangleBox> boxes(mesh.triangles.size());
+    for (int t = 0; t < int(boxes.size()); ++t) {
+        boxes[t].triangle = t;
+        boxes[t].unique = first_id + t;
+        for (int d = 0; d < 3; ++d) {
+            const auto [a, b, c] = mesh.triangles[t];
+            const auto [low, high] = std::minmax({mesh.points[a][d], mesh.points[b][d], mesh.points[c][d]});
+            boxes[t].low[d] = low;
+            boxes[t].high[d] = high;
+        }
+    }
+    return boxes;
+}
+
+void require_finite(const TriMesh& mesh) {
+    for (int i = 0; i < int(mesh.points.size()); ++i)
+        if (!mesh.points[i].allFinite())
+            throw std::invalid_argument("point " + std::to_string(i) +
+                                        " is not finite, expected finite coordinates to look for intersections");
+}
+
+Face face(const TriMesh& m, int t) {
+    const auto [a, b, c] = m.triangles[t];
+    return {to_cgal(m.points[a]), to_cgal(m.points[b]), to_cgal(m.points[c])};
+}
+
+Shape shape(const Face& f) { return span(f[0], f[1], f[2]); }
+
+// Triangles (u, v, a) and (u, v, b): other than in u v they meet only where they lie on each other.
+bool meet_beyond_edge(const Point& u, const Point& v, const Point& a, const Point& b) {
+    const bool flat_a = CGAL::collinear(u, v, a), flat_b = CGAL::collinear(u, v, b);
+    if (flat_a && flat_b) return meet_shapes(span(u, a), span(u, b)) && meet_shapes(span(v, a), span(v, b));
+    if (flat_a || flat_b) return false;
+    return CGAL::coplanar(u, v, a, b) && CGAL::coplanar_orientation(u, v, a, b) == CGAL::POSITIVE;
+}
+
+// Triangles f and g that share corner i of f and j of g. What they share beyond that corner lies on a straight
+// line from it, which ends on the side opposite the corner in one of the two.
+bool meet_beyond_corner(const Face& f, int i, const Face& g, int j) {
+    return meet_shapes(span(f[i + 1], f[i + 2]), shape(g)) || meet_shapes(span(g[j + 1], g[j + 2]), shape(f));
+}
+
+bool meet_in_mesh(const TriMesh& m, int s, int t) {
+    const Triangle &a = m.triangles[s], &b = m.triangles[t];
+    int shared = 0, free_a = 0, free_b = 3, corner_a = 0, corner_b = 0;
+    for (int i = 0; i < 3; ++i) {
+        const int j = int(std::find(b.begin(), b.end(), a[i]) - b.begin());
+        if (j == 3) {
+            free_a = i;
+            continue;
+        }
+        ++shared;
+        corner_a = i;
+        corner_b = j;
+        free_b -= j; // of corners 0 + 1 + 2, what is left when two are taken
+    }
+    const Face f = face(m, s), g = face(m, t);
+    if (shared == 0) return meet_shapes(shape(f), shape(g));
+    if (shared == 1) return meet_beyond_corner(f, corner_a, g, corner_b);
+    if (shared == 2) return meet_beyond_edge(f[free_a + 1], f[free_a + 2], f[free_a], g[free_b]);
+    return true;
+}
+
+} // namespace
+
+Pairs intersecting_pairs(const TriMesh& a, const TriMesh& b) {
+    require_finite(a);
+    require_finite(b);
+    Pairs pairs;
+    std::vector<TriangleBox> boxes_a = boxes_of(a, 0), boxes_b = boxes_of(b, boxes_a.size());
+    CGAL::box_intersection_d(boxes_a.begin(), boxes_a.end(), boxes_b.begin(), boxes_b.end(),
+                             [&](const TriangleBox& s, const TriangleBox& t) {
+                                 if (meet_shapes(shape(face(a, s.triangle)), shape(face(b, t.triangle))))
+                                     pairs.push_back({s.triangle, t.triangle});
+                             });
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+Pairs self_intersecting_pairs(const TriMesh& mesh) {
+    require_finite(mesh);
+    Pairs pairs;
+    std::vector<TriangleBox> boxes = boxes_of(mesh, 0);
+    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const TriangleBox& s, const TriangleBox& t) {
+        const auto [low, high] = std::minmax(s.triangle, t.triangle);
+        if (meet_in_mesh(mesh, low, high)) pairs.push_back({low, high});
+    });
+    std::sort(pairs.begin(), pairs.end());
+    return pairs;
+}
+
+} // namespace toile

@@ -1,25 +1,31 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "io/read_pattern.h"
 #include "sewing/avatar.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace toile {
 
 struct ReadAvatarOptions {
-    bool repair = false;                      ///< close holes instead of refusing
-    std::uintmax_t max_bytes = 1u << 30;      ///< larger files are refused
+    bool repair = false;                 ///< close holes instead of refusing
+    std::uintmax_t max_bytes = 1u << 30; ///< larger files are refused
 };
 
 struct ReadAvatar {
-    TriMesh body;                    ///< metres, y up, feet as in the file
-    std::vector<std::string> notes;  ///< unit and up axis found, quads split, holes closed: for the report
+    TriMesh body;                   ///< metres, y up, feet as in the file; closed, outside by the right-hand rule
+    std::vector<std::string> notes; ///< unit and up axis found, holes closed, ...: for the report
 };
 
-/// Any closed triangle or quad mesh in OBJ, PLY, STL, GLB or COLLADA. Throws InputError: not a mesh, no
-/// triangles, too large, leaky (with the place of the hole), not finite.
+/// Any closed mesh of triangles or polygons in OBJ, PLY, STL, GLB or COLLADA (told by the file's extension). The
+/// order of points is the file's (OBJ: exactly, less points that no face names). The unit (m, dm, cm, mm) and
+/// the up axis (y or z) are told by size: a standing person is 0.4 to 4 m tall and taller than deep. A body may
+/// cross itself (armpits, fingers) and consist of several closed pieces.
+/// Throws InputError: no such file, too large, not a mesh, no triangles, not finite, leaky (with the place of the
+/// hole), without volume, no unit fits.
 ReadAvatar read_avatar(const std::string& path, const ReadAvatarOptions& options = {});
 
 } // namespace toile

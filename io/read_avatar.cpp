@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/read_avatar.h"
+
+#include "geometry/solid.h"
+
+#include <Eigen/Geometry>
+#include <assimp/Importer.hpp>
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+namespace toile {
+
+namespace {
+
+/// Points and polygons as the file has them.
+struct Polygons {
+    Points points;
+    std::vector<std::vector<int>> faces;
+};
+
+[[noreturn]] void refuse(const std::string& path, const std::string& why) {
+    throw InputError(path + ": " + why);
+}
+
+std::string decimals(double value, int count) {
+    char text[64];
+    std::snprintf(text, sizeof text, "%.*f", count, value);
+    return text;
+}
+
+std::string place(const Vec3& p) {
+    return "x " + decimals(p.x(), 3) + ", y " + decimals(p.y(), 3) + ", z " + decimals(p.z(), 3) + " m";
+}
+
+std::string counted(size_t n, const std::string& one, const std::string& many) {
+    return std::to_string(n) + " " + (n == 1 ? one : many);
+}
+
+// ---- bytes ---------------------------------------------------------------------------------------------------
+
+std::string extension_of(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return extension.empty() ? extension : extension.substr(1);
+}
+
+std::string read_bytes(const std::string& path, std::uintmax_t max_bytes) {
+    std::error_code error;
+    const bool is_file = std::filesystem::is_regular_file(path, error);
+    if (error || !is_file) refuse(path, "there is no such file");
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    if (error) refuse(path, "the file cannot be read");
+    if (size > max_bytes)
+        refuse(path, "the file has " + std::to_string(size) + " bytes; avatars of at most " +
+                         std::to_string(max_bytes) + " bytes are read");
+    if (size == 0) refuse(path, "the file is empty");
+    std::ifstream in(path, std::ios::binary);
+    std::string bytes(size, '\0');
+    if (!in.read(bytes.data(), std::streamsize(size))) refuse(path, "the file cannot be read");
+    return bytes;
+}
+
+// ---- OBJ: read here, because assimp gives every corner of every face a point of its own in an order of its own
+// and keeps floats only ----------------------------------------------------------------------------------------
+
+std::string_view next_word(std::string_view& line) {
+    const size_t begin = line.find_first_not_of(" \t\r");
+    if (begin == std::string_view::npos) return line = {};
+    const size_t end = std::min(line.find_first_of(" \t\r", begin), line.size());
+    const std::string_view word = line.substr(begin, end - begin);
+    line.remove_prefix(end);
+    return word;
+}
+
+double obj_number(const std::string& path, std::string_view word, size_t line_number) {
+    double value = 0;
+    if (!word.empty() && word.front() == '+') word.remove_prefix(1);
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (error != std::errc() || end != word.data() + word.size())
+        refuse(path, "line " + std::to_string(line_number) + ": \"" + std::string(word.substr(0, 40)) +
+                         "\" is not a coordinate");
+    return value;
+}
+
+/// The first number of "7/2/3", counted from 1 or, when negative, back from the last point.
+int obj_index(const std::string& path, std::string_view word, size_t points, size_t line_number) {
+    long long value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool number = error == std::errc() && (end == word.data() + word.size() || *end == '/');
+    const long long index = value < 0 ? value + (long long)(points) : value - 1;
+    if (!number || value == 0 || index < 0 || index >= (long long)(points))
+        refuse(path, "line " + std::to_string(line_number) + ": the face names point \"" +
+                         std::string(word.substr(0, 40)) + "\", but " + std::to_string(points) +
+                         " points are given before it");
+    return int(index);
+}
+
+Polygons read_obj(const std::string& path, std::string_view bytes) {
+    Polygons polygons;
+    for (size_t number = 1; !bytes.empty(); ++number) {
+        const size_t end = std::min(bytes.find('\n'), bytes.size());
+        std::string_view line = bytes.substr(0, end);
+        bytes.remove_prefix(std::min(end + 1, bytes.size()));
+        const std::string_view key = next_word(line);
+        if (key == "v") {
+            Vec3 p;
+            for (double& coordinate : p) coordinate = obj_number(path, next_word(line), number);
+            polygons.points.push_back(p);
+        } else if (key == "f") {
+            std::vector<int> face;
+            for (std::string_view word = next_word(line); !word.empty(); word = next_word(line))
+                face.push_back(obj_index(path, word, polygons.points.size(), number));
+            if (face.size() >= 3) polygons.faces.push_back(std::move(face));
+        }
+    }
+    return polygons;
+}
+
+// ---- everything else: assimp ---------------------------------------------------------------------------------
+
+/// assimp falls back on guessing; a file that does not begin as its extension says is refused before that.
+void expect_signature(const std::string& path, const std::string& extension, std::string_view bytes) {
+    const bool fits = extension == "ply"   ? bytes.starts_with("ply")
+                      : extension == "glb" ? bytes.starts_with("glTF")
+                      : extension == "dae" ? bytes.substr(0, 4096).find("<COLLADA") != std::string_view::npos
+                                           : bytes.size() >= 15;
+    if (!fits) refuse(path, "this is not a mesh in the format that its name says (." + extension + ")");
+}
+
+void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, Polygons& polygons) {
+    const aiMatrix4x4 here = above * node.mTransformation;
+    for (unsigned m = 0; m < node.mNumMeshes; ++m) {
+        const aiMesh& mesh = *scene.mMeshes[node.mMeshes[m]];
+        const int first = int(polygons.points.size());
+        for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+            const aiVector3D p = here * mesh.mVertices[v];
+            polygons.points.emplace_back(p.x, p.y, p.z);
+        }
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const aiFace& face = mesh.mFaces[f];
+            if (face.mNumIndices < 3) continue;
+            std::vector<int> corners;
+            for (unsigned k = 0; k < face.mNumIndices; ++k) corners.push_back(first + int(face.mIndices[k]));
+            polygons.faces.push_back(std::move(corners));
+        }
+    }
+    for (unsigned c = 0; c < node.mNumChildren; ++c) append(scene, *node.mChildren[c], here, polygons);
+}
+
+Polygons read_by_assimp(const std::string& path, const std::string& extension, const std::string& bytes) {
+    expect_signature(path, extension, bytes);
+    Assimp::Importer importer;
+    // Textures, lights, bones and animations are no part of a body's shape.
+    importer.SetPropertyInteger(AI_CONFIG_PP_RVC_FLAGS,
+                                aiComponent_NORMALS | aiComponent_TEXCOORDS | aiComponent_COLORS |
+                                    aiComponent_TANGENTS_AND_BITANGENTS | aiComponent_TEXTURES |
+                                    aiComponent_LIGHTS | aiComponent_CAMERAS | aiComponent_ANIMATIONS |
+                                    aiComponent_BONEWEIGHTS | aiComponent_MATERIALS);
+    // From memory, so that a file cannot make the reader open other files.
+    const aiScene* scene =
+        importer.ReadFileFromMemory(bytes.data(), bytes.size(),
+                                    aiProcess_RemoveComponent | aiProcess_ValidateDataStructure, extension.c_str());
+    if (!scene) refuse(path, std::string("this is not a mesh that can be read: ") + importer.GetErrorString());
+    Polygons polygons;
+    if (scene->mRootNode) append(*scene, *scene->mRootNode, aiMatrix4x4(), polygons);
+    return polygons;
+}
+
+// ---- polygons to a closed body -------------------------------------------------------------------------------
+
+/// Quads by their shorter diagonal, more corners by the least area.
+TriMesh split_polygons(Polygons&& polygons, const std::string& path, std::vector<std::string>& notes) {
+    TriMesh mesh{std::move(polygons.points), {}};
+    size_t quads = 0, others = 0;
+    for (const std::vector<int>& f : polygons.faces) {
+        if (f.size() == 3) {
+            mesh.triangles.push_back({f[0], f[1], f[2]});
+        } else if (f.size() == 4) {
+            ++quads;
+            const Points& p = mesh.points;
+            if ((p[f[0]] - p[f[2]]).squaredNorm() <= (p[f[1]] - p[f[3]]).squaredNorm()) {
+                mesh.triangles.push_back({f[0], f[1], f[2]});
+                mesh.triangles.push_back({f[0], f[2], f[3]});
+            } else {
+                mesh.triangles.push_back({f[1], f[2], f[3]});
+                mesh.triangles.push_back({f[1], f[3], f[0]});
+            }
+        } else {
+            if (f.size() > 500)
+                refuse(path, "a face has " + std::to_string(f.size()) + " corners; at most 500 are read");
+            ++others;
+            for (const Triangle& t : fill_loop(mesh.points, f)) mesh.triangles.push_back(t);
+        }
+    }
+    if (quads > 0) notes.push_back(counted(quads, "quad", "quads") + " split into triangles");
+    if (others > 0)
+        notes.push_back(counted(others, "face", "faces") + " of more than four corners split into triangles");
+    return mesh;
+}
+
+void expect_finite(const Points& points, const std::string& path) {
+    for (size_t i = 0; i < points.size(); ++i)
+        if (!points[i].allFinite())
+            refuse(path, "point " + std::to_string(i + 1) + " is not finite (NaN or infinity)");
+}
+
+Vec3 extents(const Points& points) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : points) box.extend(p);
+    return box.sizes();
+}
+
+/// To metres and y up.
+void settle_frame(TriMesh& mesh, const std::string& path, std::vector<std::string>& notes) {
+    const Vec3 size = extents(mesh.points);
+    const bool z_up = size.z() > size.y();
+    const double height = std::max(size.y(), size.z());
+    struct Unit {
+        const char* name;
+        double metres;
+    };
+    const Unit units[] = {{"metres", 1}, {"decimetres", 0.1}, {"centimetres", 0.01}, {"millimetres", 0.001}};
+    const Unit* unit = nullptr;
+    for (const Unit& u : units)
+        if (height * u.metres >= 0.4 && height * u.metres < 4) unit = &u;
+    if (!unit)
+        refuse(path, "the body is " + decimals(height, 4) +
+                         " units tall; in metres, decimetres, centimetres or millimetres a body of 0.4 to 4 m was "
+                         "expected");
+    for (Vec3& p : mesh.points) {
+        p *= unit->metres;
+        if (z_up) p = Vec3(p.x(), p.z(), -p.y());
+    }
+    notes.push_back(std::string("read in ") + unit->name + ", " + (z_up ? "z" : "y") + " up, " +
+                    decimals(height * unit->metres, 3) + " m tall");
+}
+
+struct Hole {
+    Vec3 centre = Vec3::Zero();
+    double length = 0; ///< around, m
+};
+
+Hole describe(const Points& points, const std::vector<int>& loop) {
+    Hole hole;
+    for (size_t i = 0; i < loop.size(); ++i) {
+        hole.centre += points[loop[i]] / double(loop.size());
+        hole.length += (points[loop[i]] - points[loop[(i + 1) % loop.size()]]).norm();
+    }
+    return hole;
+}
+
+void refuse_leaks(const TriMesh& mesh, const std::vector<std::vector<int>>& loops, const std::string& path) {
+    size_t edges = 0, largest = 0;
+    for (size_t i = 0; i < loops.size(); ++i) {
+        edges += loops[i].size();
+        if (describe(mesh.points, loops[i]).length > describe(mesh.points, loops[largest]).length) largest = i;
+    }
+    const Hole hole = describe(mesh.points, loops[largest]);
+    refuse(path, "the surface is not closed: " + counted(loops.size(), "hole", "holes") + " with " +
+                     counted(edges, "open edge", "open edges") + ", the largest " +
+                     decimals(100 * hole.length, 1) + " cm around at " + place(hole.centre) +
+                     "; close it, or ask for repair");
+}
+
+void close_leaks(TriMesh& mesh, const std::vector<std::vector<int>>& loops, const std::string& path,
+                 std::vector<std::string>& notes) {
+    const double height = extents(mesh.points).y();
+    for (const std::vector<int>& loop : loops) {
+        const Hole hole = describe(mesh.points, loop);
+        if (hole.length > height || loop.size() > 500)
+            refuse(path, "the hole at " + place(hole.centre) + " is too large to be closed: " +
+                             decimals(100 * hole.length, 1) + " cm around with " + std::to_string(loop.size()) +
+                             " edges; at most the body's height around and 500 edges are closed");
+        for (const Triangle& t : fill_loop(mesh.points, loop)) mesh.triangles.push_back(t);
+        notes.push_back("hole of " + decimals(100 * hole.length, 1) + " cm around closed at " + place(hole.centre));
+    }
+}
+
+/// Joins, orients, and closes or refuses.
+void make_closed(TriMesh& mesh, bool repair, const std::string& path, std::vector<std::string>& notes) {
+    if (const int joined = join_equal_points(mesh); joined > 0)
+        notes.push_back(counted(joined, "point", "points") + " joined with others in the same place");
+    if (const int flat = drop_flat_triangles(mesh); flat > 0)
+        notes.push_back(counted(flat, "triangle", "triangles") + " without area removed");
+    if (mesh.triangles.empty()) refuse(path, "the mesh has no triangles with an area");
+    if (const int turned = orient_outward(mesh); turned > 0)
+        notes.push_back(counted(turned, "triangle", "triangles") + " turned to face outward");
+    const std::vector<std::vector<int>> loops = border_loops(mesh);
+    if (!loops.empty()) {
+        if (!repair) refuse_leaks(mesh, loops, path);
+        close_leaks(mesh, loops, path, notes);
+        orient_outward(mesh);
+    }
+    if (const int crowded = crowded_edges(mesh); crowded > 0)
+        notes.push_back(counted(crowded, "edge carries", "edges carry") + " more than two triangles");
+    drop_unused_points(mesh);
+}
+
+void expect_volume(const TriMesh& mesh, const std::string& path) {
+    const double height = extents(mesh.points).y();
+    // A person of 1.7 m has 0.06 m3; a folded sheet has none.
+    if (volume(mesh) < 1e-4 * height * height * height)
+        refuse(path, "the surface encloses no volume (" + decimals(1e3 * volume(mesh), 3) +
+                         " litres); a closed body was expected");
+}
+
+} // namespace
+
+ReadAvatar read_avatar(const std::string& path, const ReadAvatarOptions& options) {
+    const std::string extension = extension_of(path);
+    if (extension != "obj" && extension != "ply" && extension != "stl" && extension != "glb" && extension != "dae")
+        refuse(path, "avatars are read from .obj, .ply, .stl, .glb and .dae files");
+    const std::string bytes = read_bytes(path, options.max_bytes);
+    Polygons polygons = extension == "obj" ? read_obj(path, bytes) : read_by_assimp(path, extension, bytes);
+    if (polygons.faces.empty()) refuse(path, "there are no triangles in the file");
+    expect_finite(polygons.points, path);
+
+    ReadAvatar result;
+    result.body = split_polygons(std::move(polygons), path, result.notes);
+    if (const int unused = drop_unused_points(result.body); unused > 0)
+        result.notes.push_back(counted(unused, "point", "points") + " without a face left out");
+    settle_frame(result.body, path, result.notes);
+    make_closed(result.body, options.repair, path, result.notes);
+    expect_volume(result.body, path);
+    return result;
+}
+
+} // namespace toile

@@ -2,7 +2,7 @@
 #pragma once
 
 // By how much a drape meets its promises. Everything here is computed from the mesh alone, as an independent
-// reader of the written file would compute it.
+// reader of the written file would compute it. Positions `x` are by node, in metres; y is up.
 
 #include "draping/fabric/fabric.h"
 #include "sewing/avatar.h"
@@ -10,42 +10,54 @@
 
 namespace toile {
 
+/// Weighted by flat area; p99 is that of the absolute value: 99 % of the area stays below it. All zero over nothing.
 struct Spread {
-    double min = 0, max = 0, p99 = 0, mean = 0; ///< area-weighted; p99 of the absolute value
+    double min = 0, max = 0, p99 = 0, mean = 0;
 };
 
-/// Strain per triangle of the written mesh: stretch - 1 along warp and weft, principal stretches - 1, and the
-/// angle (rad) by which warp and weft have left their right angle.
+/// Strain per triangle of the written mesh: stretch - 1 along warp and weft, principal stretches - 1 (both of each
+/// triangle), and the angle (rad) by which warp and weft have left their right angle (positive: they have closed).
+/// Cloth gathered into an eased seam is not strained: there, compression counts as 0.
 struct StrainMeasure {
     Spread warp, weft, principal, shear;
-    double limit_warp = 0, limit_weft = 0, limit_shear = 0; ///< the tightest of the fabrics used
+    double limit_warp = 0, limit_weft = 0, limit_shear = 0; ///< the tightest of the fabrics used; 0 when none has one
     double compressed_area = 0; ///< share of the area off eased seams whose smaller principal stretch is below 0.98
 };
 
+/// Largest and mean |2 pi - sum of angles| (rad) over inner nodes off seams and darts.
 struct DevelopabilityMeasure {
-    double angle_defect_mean = 0, angle_defect_max = 0; ///< rad, |2 pi - sum of angles| at inner nodes off seams and darts
+    double angle_defect_mean = 0, angle_defect_max = 0;
 };
 
-/// Ease at a height: girth of the garment minus girth of the body, metres; `found` is false where the garment
-/// does not go round the torso.
+/// Ease at a height: girth of the garment minus girth of the body, metres, both by tape measure (convex hull);
+/// `found` is false where the garment does not go round the torso. Where several layers do, the tightest counts.
 struct EaseMeasure {
     bool found = false;
     double garment = 0, body = 0, ease = 0;
 };
 
 struct IntersectionCount {
-    int cloth_avatar = 0, cloth_cloth = 0;
+    int cloth_avatar = 0, cloth_cloth = 0; ///< pairs of triangles
 };
 
 /// One fabric per panel.
 using PanelFabrics = std::vector<Fabric>;
 
+/// `fabrics` may be empty: the limits are then unknown (0). Triangles of no flat area do not count.
 StrainMeasure measure_strain(const Garment& garment, const Points& x, const PanelFabrics& fabrics);
+
 DevelopabilityMeasure measure_developability(const Garment& garment, const Points& x);
+
+/// The torso is the largest loop of the body at this height, so it has to be above the crotch.
 EaseMeasure measure_ease(const Garment& garment, const Points& x, const TriMesh& body, double height);
+
+/// Longest stitch, metres; 0 when every seam is closed.
 double seam_gap_max(const Garment& garment, const Points& x);
+
+/// By exact predicates; `cloth` is over nodes.
 IntersectionCount count_intersections(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body);
-/// Smallest distance between cloth and body, metres.
+
+/// Smallest distance between cloth and body, metres; 0 when they intersect, infinity when either is empty.
 double clearance_min(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body);
 
 } // namespace toile

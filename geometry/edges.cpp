@@ -98,30 +98,4 @@ int count_pieces(const std::vector<Triangle>& triangles, int point_count) {
     return int(std::unique(lowest.begin(), lowest.end()) - lowest.begin());
 }
 
-std::vector<std::vector<int>> border_loops(const std::vector<Triangle>& triangles, const EdgeTable& edges) {
-    std::vector<std::array<int, 2>> border; // directed, sorted by where they start
-    for (int t = 0; t < int(triangles.size()); ++t)
-        for (int k = 0; k < 3; ++k)
-            if (edges.triangles_at(edges.of_triangle[t][k]) == 1) border.push_back(side(triangles[t], k));
-    std::sort(border.begin(), border.end());
-
-    std::vector<bool> used(border.size(), false);
-    const auto next_from = [&](int point) {
-        auto at = std::lower_bound(border.begin(), border.end(), std::array<int, 2>{point, -1});
-        while (at != border.end() && (*at)[0] == point && used[at - border.begin()]) ++at;
-        return at != border.end() && (*at)[0] == point ? int(at - border.begin()) : -1;
-    };
-    std::vector<std::vector<int>> loops;
-    for (int s = 0; s < int(border.size()); ++s) {
-        if (used[s]) continue;
-        std::vector<int> loop;
-        for (int e = s; e >= 0; e = next_from(border[e][1])) {
-            used[e] = true;
-            loop.push_back(border[e][0]);
-        }
-        loops.push_back(std::move(loop));
-    }
-    return loops;
-}
-
 } // namespace toile

@@ -27,8 +27,4 @@ int count_pieces(const std::vector<Triangle>& triangles, int point_count);
 /// For every point the lowest index of a point in its piece; points of no triangle are pieces of their own.
 std::vector<int> pieces(const std::vector<Triangle>& triangles, int point_count);
 
-/// Closed loops of the border (edges of one triangle), each as its points in the direction of the triangles.
-/// Where several loops touch in a point they are still walked apart or as one; every border edge is in one loop.
-std::vector<std::vector<int>> border_loops(const std::vector<Triangle>& triangles, const EdgeTable& edges);
-
 } // namespace toile

@@ -81,45 +81,66 @@ void require_finite(const TriMesh& mesh) {
                                         " is not finite, expected finite coordinates to look for intersections");
 }
 
-Face face(const TriMesh& m, int t) {
-    const auto [a, b, c] = m.triangles[t];
-    return {to_cgal(m.points[a]), to_cgal(m.points[b]), to_cgal(m.points[c])};
+// What every triangle spans. Found once: it costs as much as a test of two triangles.
+std::vector<Shape> shapes_of(const TriMesh& m) {
+    std::vector<Shape> shapes;
+    shapes.reserve(m.triangles.size());
+    for (const auto& [a, b, c] : m.triangles)
+        shapes.push_back(span(to_cgal(m.points[a]), to_cgal(m.points[b]), to_cgal(m.points[c])));
+    return shapes;
 }
-
-Shape shape(const Face& f) { return span(f[0], f[1], f[2]); }
 
 // Triangles (u, v, a) and (u, v, b): other than in u v they meet only where they lie on each other.
 bool meet_beyond_edge(const Point& u, const Point& v, const Point& a, const Point& b) {
+    if (!CGAL::coplanar(u, v, a, b)) return false;
     const bool flat_a = CGAL::collinear(u, v, a), flat_b = CGAL::collinear(u, v, b);
     if (flat_a && flat_b) return meet_shapes(span(u, a), span(u, b)) && meet_shapes(span(v, a), span(v, b));
     if (flat_a || flat_b) return false;
-    return CGAL::coplanar(u, v, a, b) && CGAL::coplanar_orientation(u, v, a, b) == CGAL::POSITIVE;
+    return CGAL::coplanar_orientation(u, v, a, b) == CGAL::POSITIVE;
 }
 
-// Triangles f and g that share corner i of f and j of g. What they share beyond that corner lies on a straight
-// line from it, which ends on the side opposite the corner in one of the two.
-bool meet_beyond_corner(const Face& f, int i, const Face& g, int j) {
-    return meet_shapes(span(f[i + 1], f[i + 2]), shape(g)) || meet_shapes(span(g[j + 1], g[j + 2]), shape(f));
+Shape side_opposite(const TriMesh& m, int t, int corner) {
+    const Triangle& k = m.triangles[t];
+    return span(to_cgal(m.points[k[(corner + 1) % 3]]), to_cgal(m.points[k[(corner + 2) % 3]]));
 }
 
-bool meet_in_mesh(const TriMesh& m, int s, int t) {
-    const Triangle &a = m.triangles[s], &b = m.triangles[t];
-    int shared = 0, free_a = 0, free_b = 3, corner_a = 0, corner_b = 0;
+// Corners that two triangles of a mesh share, and the last corner of each that they do not.
+struct Shared {
+    int count = 0;
+    int corner_a = 0, corner_b = 0; ///< a shared corner
+    int free_a = 0, free_b = 0;
+};
+
+Shared shared_corners(const Triangle& a, const Triangle& b) {
+    Shared s;
     for (int i = 0; i < 3; ++i) {
         const int j = int(std::find(b.begin(), b.end(), a[i]) - b.begin());
-        if (j == 3) {
-            free_a = i;
-            continue;
+        if (j < 3) {
+            ++s.count;
+            s.corner_a = i;
+            s.corner_b = j;
+        } else {
+            s.free_a = i;
         }
-        ++shared;
-        corner_a = i;
-        corner_b = j;
-        free_b -= j; // of corners 0 + 1 + 2, what is left when two are taken
     }
-    const Face f = face(m, s), g = face(m, t);
-    if (shared == 0) return meet_shapes(shape(f), shape(g));
-    if (shared == 1) return meet_beyond_corner(f, corner_a, g, corner_b);
-    if (shared == 2) return meet_beyond_edge(f[free_a + 1], f[free_a + 2], f[free_a], g[free_b]);
+    for (int j = 0; j < 3; ++j)
+        if (std::find(a.begin(), a.end(), b[j]) == a.end()) s.free_b = j;
+    return s;
+}
+
+bool meet_in_mesh(const TriMesh& m, const std::vector<Shape>& shapes, int a, int b) {
+    const Triangle &ta = m.triangles[a], &tb = m.triangles[b];
+    const Shared shared = shared_corners(ta, tb);
+    if (shared.count == 0) return meet_shapes(shapes[a], shapes[b]);
+    // What two triangles share beyond a corner lies on straight lines from it, which end on the side opposite
+    // the corner in one of the two.
+    if (shared.count == 1)
+        return meet_shapes(side_opposite(m, a, shared.corner_a), shapes[b]) ||
+               meet_shapes(side_opposite(m, b, shared.corner_b), shapes[a]);
+    if (shared.count == 2)
+        return meet_beyond_edge(to_cgal(m.points[ta[(shared.free_a + 1) % 3]]),
+                                to_cgal(m.points[ta[(shared.free_a + 2) % 3]]),
+                                to_cgal(m.points[ta[shared.free_a]]), to_cgal(m.points[tb[shared.free_b]]));
     return true;
 }
 
@@ -129,10 +150,11 @@ Pairs intersecting_pairs(const TriMesh& a, const TriMesh& b) {
     require_finite(a);
     require_finite(b);
     Pairs pairs;
+    const std::vector<Shape> shapes_a = shapes_of(a), shapes_b = shapes_of(b);
     std::vector<TriangleBox> boxes_a = boxes_of(a, 0), boxes_b = boxes_of(b, boxes_a.size());
     CGAL::box_intersection_d(boxes_a.begin(), boxes_a.end(), boxes_b.begin(), boxes_b.end(),
                              [&](const TriangleBox& s, const TriangleBox& t) {
-                                 if (meet_shapes(shape(face(a, s.triangle)), shape(face(b, t.triangle))))
+                                 if (meet_shapes(shapes_a[s.triangle], shapes_b[t.triangle]))
                                      pairs.push_back({s.triangle, t.triangle});
                              });
     std::sort(pairs.begin(), pairs.end());
@@ -142,10 +164,11 @@ Pairs intersecting_pairs(const TriMesh& a, const TriMesh& b) {
 Pairs self_intersecting_pairs(const TriMesh& mesh) {
     require_finite(mesh);
     Pairs pairs;
+    const std::vector<Shape> shapes = shapes_of(mesh);
     std::vector<TriangleBox> boxes = boxes_of(mesh, 0);
     CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const TriangleBox& s, const TriangleBox& t) {
         const auto [low, high] = std::minmax(s.triangle, t.triangle);
-        if (meet_in_mesh(mesh, low, high)) pairs.push_back({low, high});
+        if (meet_in_mesh(mesh, shapes, low, high)) pairs.push_back({low, high});
     });
     std::sort(pairs.begin(), pairs.end());
     return pairs;

@@ -66,10 +66,6 @@ Garment sew(const Pattern& pattern, const FlatLevel& flat);
 Garment close_seams(const Garment& garment, std::vector<int>* node_map = nullptr);
 
 /// Triangles over nodes with the given positions.
-inline std::vector<Triangle> node_triangles(const Garment& garment) {
-    std::vector<Triangle> triangles;
-    for (std::size_t t = 0; t < garment.triangles.size(); ++t) triangles.push_back(garment.nodes(int(t)));
-    return triangles;
-}
+std::vector<Triangle> node_triangles(const Garment& garment);
 
 } // namespace toile

@@ -76,22 +76,3 @@ TEST_CASE("pieces are counted over shared points, stray points are none") {
     CHECK(count_pieces({{0, 1, 2}, {5, 3, 4}, {6, 7, 8}, {8, 3, 6}}, 9) == 2);
     CHECK(pieces({{4, 1, 2}}, 5) == std::vector<int>{0, 1, 1, 3, 1});
 }
-
-TEST_CASE("border loops of a ring, and of two triangles that touch in a point") {
-    // A ring of eight triangles around a hole: outer square 0..3, inner square 4..7.
-    std::vector<Triangle> ring;
-    for (int k = 0; k < 4; ++k) {
-        const int n = (k + 1) % 4;
-        ring.push_back({k, n, 4 + n});
-        ring.push_back({k, 4 + n, 4 + k});
-    }
-    const auto loops = border_loops(ring, make_edges(ring, 8));
-    REQUIRE(loops.size() == 2);
-    CHECK(loops[0] == std::vector<int>{0, 1, 2, 3});
-    CHECK(loops[1] == std::vector<int>{4, 7, 6, 5});
-
-    const std::vector<Triangle> touching = {{0, 1, 2}, {2, 3, 4}};
-    std::size_t edges = 0;
-    for (const auto& loop : border_loops(touching, make_edges(touching, 5))) edges += loop.size();
-    CHECK(edges == 6);
-}

@@ -12,7 +12,9 @@ Vec3 panel_colour(int panel) {
     return dark + step * (light - dark);
 }
 
-Vec3 body_colour() { return {0.60, 0.53, 0.47}; }
+Vec3 body_colour() {
+    return {0.60, 0.53, 0.47};
+}
 
 double srgb(double linear) {
     return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;

@@ -7,8 +7,8 @@
 
 namespace toile {
 
-/// Linear RGB in [0, 1] of a panel's right side: one blue cloth in slightly different shades, so that neighbours in
-/// the file's order differ.
+/// Linear RGB in [0, 1] of a panel's right side: one blue cloth in slightly different shades, so that
+/// neighbours in the file's order differ.
 Vec3 panel_colour(int panel);
 
 /// Linear RGB of the body.

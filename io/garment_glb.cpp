@@ -25,7 +25,8 @@ constexpr std::uint32_t magic = 0x46546C67, json_chunk = 0x4E4F534A, binary_chun
 constexpr int type_u8 = 5121, type_u16 = 5123, type_u32 = 5125, type_float = 5126;
 constexpr int target_vertices = 34962, target_indices = 34963;
 
-// ---- writing ------------------------------------------------------------------------------------------------
+// ---- writing
+// ------------------------------------------------------------------------------------------------
 
 struct Writer {
     Json gltf;
@@ -79,8 +80,9 @@ struct Writer {
     /// A mesh of one primitive and a node that holds it; returns the node.
     std::size_t mesh(const std::string& name, Json attributes, int indices, int material, Json extras) {
         Json mesh{{"name", name},
-                  {"primitives",
-                   Json::array({{{"attributes", std::move(attributes)}, {"indices", indices}, {"material", material}}})}};
+                  {"primitives", Json::array({{{"attributes", std::move(attributes)},
+                                               {"indices", indices},
+                                               {"material", material}}})}};
         if (!extras.is_null()) mesh["extras"] = std::move(extras);
         gltf["meshes"].push_back(std::move(mesh));
         gltf["nodes"].push_back({{"name", name}, {"mesh", gltf["meshes"].size() - 1}});
@@ -94,18 +96,21 @@ Points normals(const std::vector<Triangle>& triangles, const Points& x) {
     for (const Triangle& t : triangles) {
         const Vec3& o = x[std::size_t(t[0])];
         const Vec3 n = (x[std::size_t(t[1])] - o).cross(x[std::size_t(t[2])] - o);
-        for (const int v : t) sum[std::size_t(v)] += n;
+        for (const int v : t)
+            sum[std::size_t(v)] += n;
     }
-    for (Vec3& n : sum) n = n.norm() > 0 ? n.normalized() : Vec3(0, 1, 0);
+    for (Vec3& n : sum)
+        n = n.norm() > 0 ? n.normalized() : Vec3(0, 1, 0);
     return sum;
 }
 
 void append(std::vector<float>& out, const Vec3& p) {
-    for (int k = 0; k < 3; ++k) out.push_back(float(p[k]));
+    for (int k = 0; k < 3; ++k)
+        out.push_back(float(p[k]));
 }
 
-std::size_t write_panel(Writer& w, const Garment& g, const Points& x, const Points& normal, const UvLayout& layout,
-                        int panel) {
+std::size_t write_panel(Writer& w, const Garment& g, const Points& x, const Points& normal,
+                        const UvLayout& layout, int panel) {
     std::vector<std::uint32_t> local(g.uv.size());
     std::vector<float> position, direction, texture, node;
     for (std::size_t v = 0; v < g.uv.size(); ++v) {
@@ -122,7 +127,8 @@ std::size_t write_panel(Writer& w, const Garment& g, const Points& x, const Poin
     std::vector<std::uint32_t> index;
     for (std::size_t t = 0; t < g.triangles.size(); ++t)
         if (g.panel_of_triangle[t] == panel)
-            for (const int v : g.triangles[t]) index.push_back(local[std::size_t(v)]);
+            for (const int v : g.triangles[t])
+                index.push_back(local[std::size_t(v)]);
     Json attributes{{"POSITION", w.positions(position)},
                     {"NORMAL", w.floats(direction, 3, "VEC3")},
                     {"TEXCOORD_0", w.floats(texture, 2, "VEC2")},
@@ -136,14 +142,17 @@ std::size_t write_panel(Writer& w, const Garment& g, const Points& x, const Poin
 
 std::size_t write_avatar(Writer& w, const TriMesh& body) {
     std::vector<float> position, direction;
-    for (const Vec3& p : body.points) append(position, p);
-    for (const Vec3& n : normals(body.triangles, body.points)) append(direction, n);
+    for (const Vec3& p : body.points)
+        append(position, p);
+    for (const Vec3& n : normals(body.triangles, body.points))
+        append(direction, n);
     std::vector<std::uint32_t> index;
     for (const Triangle& t : body.triangles)
-        for (const int v : t) index.push_back(std::uint32_t(v));
+        for (const int v : t)
+            index.push_back(std::uint32_t(v));
     Json attributes{{"POSITION", w.positions(position)}, {"NORMAL", w.floats(direction, 3, "VEC3")}};
-    return w.mesh("avatar", std::move(attributes), w.indices(index), w.material("avatar", body_colour(), false),
-                  nullptr);
+    return w.mesh("avatar", std::move(attributes), w.indices(index),
+                  w.material("avatar", body_colour(), false), nullptr);
 }
 
 void append_chunk(std::string& out, std::uint32_t kind, std::string data, char fill) {
@@ -162,7 +171,8 @@ std::string container(const Writer& w) {
     return std::string(reinterpret_cast<const char*>(header.data()), 12) + chunks;
 }
 
-// ---- reading ------------------------------------------------------------------------------------------------
+// ---- reading
+// ------------------------------------------------------------------------------------------------
 
 struct Reader {
     std::string name;
@@ -181,7 +191,9 @@ struct Reader {
         return gltf[list][i];
     }
 
-    static std::size_t size_of(int component) { return component == type_u8 ? 1 : component == type_u16 ? 2 : 4; }
+    static std::size_t size_of(int component) {
+        return component == type_u8 ? 1 : component == type_u16 ? 2 : 4;
+    }
 
     double value(const char* at, int component) const {
         if (component == type_u8) return double(std::uint8_t(*at));
@@ -198,8 +210,10 @@ struct Reader {
         const Json& a = item("accessors", index);
         const int component = a.at("componentType");
         if (a.at("type") != type || a.contains("sparse") || !a.contains("bufferView") ||
-            (component != type_u8 && component != type_u16 && component != type_u32 && component != type_float))
-            refuse("accessor " + std::to_string(index) + " is not a plain " + type + " of a kind that is read");
+            (component != type_u8 && component != type_u16 && component != type_u32 &&
+             component != type_float))
+            refuse("accessor " + std::to_string(index) + " is not a plain " + type +
+                   " of a kind that is read");
         const Json& view = item("bufferViews", a["bufferView"]);
         const std::size_t size = size_of(component), count = a.at("count");
         const std::size_t stride = view.value("byteStride", std::size_t(per_item * size));
@@ -215,7 +229,8 @@ struct Reader {
             for (std::size_t k = 0; k < per_item; ++k)
                 out.push_back(value(binary.data() + offset + begin + i * stride + k * size, component));
         for (const double v : out)
-            if (!std::isfinite(v)) refuse("accessor " + std::to_string(index) + " holds a number that is not finite");
+            if (!std::isfinite(v))
+                refuse("accessor " + std::to_string(index) + " holds a number that is not finite");
         return out;
     }
 
@@ -230,7 +245,8 @@ struct Reader {
             const std::vector<double> given = node.value(key, other);
             return given.size() == other.size() ? given : other;
         };
-        const auto p = part("translation", {0, 0, 0}), r = part("rotation", {0, 0, 0, 1}), s = part("scale", {1, 1, 1});
+        const auto p = part("translation", {0, 0, 0}), r = part("rotation", {0, 0, 0, 1}),
+                   s = part("scale", {1, 1, 1});
         t.translate(Vec3(p[0], p[1], p[2]));
         t.rotate(Eigen::Quaterniond(r[3], r[0], r[1], r[2]));
         t.scale(Vec3(s[0], s[1], s[2]));
@@ -255,8 +271,10 @@ struct Reader {
     void read_uv(const Json& mesh, const std::string& panel, const Json& attributes, std::size_t count) {
         if (!attributes.contains("TEXCOORD_0")) return;
         const std::vector<double> uv = numbers(attributes["TEXCOORD_0"], 2, "VEC2");
-        if (uv.size() != 2 * count) refuse("mesh " + panel + " has not as many texture coordinates as positions");
-        for (std::size_t i = 0; i < count; ++i) parts.uv.emplace_back(uv[2 * i], 1 - uv[2 * i + 1]);
+        if (uv.size() != 2 * count)
+            refuse("mesh " + panel + " has not as many texture coordinates as positions");
+        for (std::size_t i = 0; i < count; ++i)
+            parts.uv.emplace_back(uv[2 * i], 1 - uv[2 * i + 1]);
         const Json extras = mesh.value("extras", Json::object());
         if (extras.contains("uv_metres")) parts.uv_metres = extras["uv_metres"].get<double>();
         const std::vector<double> origin = extras.value("uv_origin", std::vector<double>());
@@ -266,17 +284,20 @@ struct Reader {
     Points positions(const Json& attributes, const Eigen::Affine3d& place) const {
         const std::vector<double> p = numbers(attributes.at("POSITION"), 3, "VEC3");
         Points out;
-        for (std::size_t i = 0; i < p.size(); i += 3) out.push_back(place * Vec3(p[i], p[i + 1], p[i + 2]));
+        for (std::size_t i = 0; i < p.size(); i += 3)
+            out.push_back(place * Vec3(p[i], p[i + 1], p[i + 2]));
         return out;
     }
 
     std::vector<int> indices(const Json& primitive, std::size_t count) const {
         std::vector<int> out;
         if (!primitive.contains("indices"))
-            for (std::size_t i = 0; i < count; ++i) out.push_back(int(i));
+            for (std::size_t i = 0; i < count; ++i)
+                out.push_back(int(i));
         else
             for (const double i : numbers(primitive["indices"], 1, "SCALAR")) {
-                if (i >= double(count)) refuse("a triangle names vertex " + std::to_string(i) + " of " + std::to_string(count));
+                if (i >= double(count))
+                    refuse("a triangle names vertex " + std::to_string(i) + " of " + std::to_string(count));
                 out.push_back(int(i));
             }
         if (out.size() % 3 != 0) refuse("a mesh's indices are not whole triangles");
@@ -291,7 +312,8 @@ struct Reader {
         std::vector<double> number;
         if (attributes.contains("_NODE")) number = numbers(attributes["_NODE"], 1, "SCALAR");
         if (parts.faces.empty()) numbered = number.size() == p.size();
-        if (numbered && number.size() != p.size()) refuse("mesh " + panel + " has not as many node numbers as positions");
+        if (numbered && number.size() != p.size())
+            refuse("mesh " + panel + " has not as many node numbers as positions");
         std::vector<int> node;
         for (std::size_t i = 0; i < p.size(); ++i)
             node.push_back(numbered ? numbered_node(number[i], p[i]) : merged_node(p[i]));
@@ -310,7 +332,8 @@ struct Reader {
         parts.avatar.points.insert(parts.avatar.points.end(), p.begin(), p.end());
         const std::vector<int> index = indices(primitive, p.size());
         for (std::size_t i = 0; i < index.size(); i += 3)
-            parts.avatar.triangles.push_back({before + index[i], before + index[i + 1], before + index[i + 2]});
+            parts.avatar.triangles.push_back(
+                {before + index[i], before + index[i + 1], before + index[i + 2]});
     }
 
     void read_node(std::size_t index, const Eigen::Affine3d& parent, int depth) {
@@ -330,7 +353,8 @@ struct Reader {
                     read_garment(mesh, called, primitive, p);
             }
         }
-        for (const Json& child : node.value("children", Json::array())) read_node(child, place, depth + 1);
+        for (const Json& child : node.value("children", Json::array()))
+            read_node(child, place, depth + 1);
     }
 
     void read_stitches() {
@@ -359,12 +383,14 @@ std::string_view chunk(std::string_view& bytes, std::uint32_t kind, const std::s
 std::string garment_glb(const Garment& g, const Points& x, const WriteOptions& options) {
     Writer w;
     w.gltf["asset"] = {{"version", "2.0"}, {"generator", "toile " TOILE_VERSION}};
-    for (const Stitch& s : g.stitches) w.gltf["asset"]["extras"]["stitches"].push_back({s.a, s.b[0], s.b[1], s.r});
+    for (const Stitch& s : g.stitches)
+        w.gltf["asset"]["extras"]["stitches"].push_back({s.a, s.b[0], s.b[1], s.r});
     w.gltf["scene"] = 0;
     const UvLayout layout = lay_out_panels(g);
     const Points normal = normals(node_triangles(g), x);
     std::vector<bool> has_cloth(g.panel_names.size(), false);
-    for (const int p : g.panel_of_triangle) has_cloth[std::size_t(p)] = true;
+    for (const int p : g.panel_of_triangle)
+        has_cloth[std::size_t(p)] = true;
     Json roots = Json::array();
     for (std::size_t p = 0; p < g.panel_names.size(); ++p)
         if (has_cloth[p]) roots.push_back(write_panel(w, g, x, normal, layout, int(p)));

@@ -12,19 +12,22 @@
 namespace toile {
 namespace {
 
-// ---- writing ------------------------------------------------------------------------------------------------
+// ---- writing
+// ------------------------------------------------------------------------------------------------
 
 /// The shortest decimals that read back as the same double.
 void append(std::string& out, double value) {
     char digits[32];
-    out.append(digits, std::to_chars(digits, digits + sizeof digits, value + 0.0).ptr); // + 0.0: no minus zero
+    out.append(digits,
+               std::to_chars(digits, digits + sizeof digits, value + 0.0).ptr); // + 0.0: no minus zero
 }
 
 void append_points(std::string& out, const Points& x, const WriteOptions& options) {
     for (const Vec3& p : x) {
         const Vec3 q = (options.z_up ? Vec3(p.x(), -p.z(), p.y()) : p) / options.metres_per_unit;
         out += 'v';
-        for (int k = 0; k < 3; ++k) append(out += ' ', q[k]);
+        for (int k = 0; k < 3; ++k)
+            append(out += ' ', q[k]);
         out += '\n';
     }
 }
@@ -41,10 +44,12 @@ std::vector<std::string> group_names(const Garment& g) {
     std::vector<std::string> names;
     for (std::string name : g.panel_names) {
         std::replace_if(
-            name.begin(), name.end(), [](unsigned char c) { return std::isspace(c) || std::iscntrl(c); }, '_');
+            name.begin(), name.end(), [](unsigned char c) { return std::isspace(c) || std::iscntrl(c); },
+            '_');
         if (name.empty()) name = "panel";
         const std::string stem = name;
-        for (int k = 2; !taken.insert(name).second; ++k) name = stem + "_" + std::to_string(k);
+        for (int k = 2; !taken.insert(name).second; ++k)
+            name = stem + "_" + std::to_string(k);
         names.push_back(name);
     }
     return names;
@@ -74,7 +79,8 @@ void append_panels(std::string& out, const Garment& g, const std::vector<std::st
             if (g.panel_of_triangle[t] != int(p)) continue;
             out += 'f';
             for (const int v : g.triangles[t])
-                out += ' ' + std::to_string(g.node_of_vertex[std::size_t(v)] + 1) + '/' + std::to_string(v + 1);
+                out +=
+                    ' ' + std::to_string(g.node_of_vertex[std::size_t(v)] + 1) + '/' + std::to_string(v + 1);
             out += '\n';
         }
     }
@@ -82,7 +88,8 @@ void append_panels(std::string& out, const Garment& g, const std::vector<std::st
 
 void append_stitches(std::string& out, const Garment& g) {
     for (const Stitch& s : g.stitches) {
-        out += "stitch " + std::to_string(s.a) + ' ' + std::to_string(s.b[0]) + ' ' + std::to_string(s.b[1]) + ' ';
+        out += "stitch " + std::to_string(s.a) + ' ' + std::to_string(s.b[0]) + ' ' + std::to_string(s.b[1]) +
+               ' ';
         append(out, s.r);
         out += '\n';
     }
@@ -92,18 +99,21 @@ void append_mesh(std::string& out, const TriMesh& mesh, int nodes_before, const 
     append_points(out, mesh.points, options);
     for (const Triangle& t : mesh.triangles) {
         out += 'f';
-        for (const int v : t) out += ' ' + std::to_string(v + 1 + nodes_before);
+        for (const int v : t)
+            out += ' ' + std::to_string(v + 1 + nodes_before);
         out += '\n';
     }
 }
 
 void append_material(std::string& out, const std::string& name, const Vec3& colour) {
     out += "newmtl " + name + "\nKd";
-    for (int k = 0; k < 3; ++k) append(out += ' ', std::round(srgb(colour[k]) * 1e4) / 1e4);
+    for (int k = 0; k < 3; ++k)
+        append(out += ' ', std::round(srgb(colour[k]) * 1e4) / 1e4);
     out += "\nKs 0 0 0\nillum 1\n";
 }
 
-// ---- reading ------------------------------------------------------------------------------------------------
+// ---- reading
+// ------------------------------------------------------------------------------------------------
 
 struct Reader {
     GarmentParts parts;
@@ -151,7 +161,8 @@ struct Reader {
         const int i = integer(text);
         const int k = i < 0 ? int(count) + i : i - 1;
         if (i == 0 || k < 0 || k >= int(count))
-            refuse("index " + std::to_string(i) + " is not among the " + std::to_string(count) + " before it");
+            refuse("index " + std::to_string(i) + " is not among the " + std::to_string(count) +
+                   " before it");
         return k;
     }
 
@@ -166,8 +177,10 @@ struct Reader {
 
     void read_face(std::string_view rest) {
         std::vector<GarmentParts::Corner> corners;
-        for (std::string_view w = word(rest); !w.empty(); w = word(rest)) corners.push_back(corner(w));
-        if (corners.size() < 3) refuse("a face has " + std::to_string(corners.size()) + " corners, expected 3 or more");
+        for (std::string_view w = word(rest); !w.empty(); w = word(rest))
+            corners.push_back(corner(w));
+        if (corners.size() < 3)
+            refuse("a face has " + std::to_string(corners.size()) + " corners, expected 3 or more");
         for (std::size_t k = 2; k < corners.size(); ++k) {
             if (in_avatar)
                 avatar_faces.push_back({corners[0].node, corners[k - 1].node, corners[k].node});
@@ -236,20 +249,23 @@ struct Reader {
     void take_avatar() {
         std::vector<int> to(parts.nodes.size(), -1);
         for (const auto& face : avatar_faces)
-            for (const int v : face) to[std::size_t(v)] = 0;
+            for (const int v : face)
+                to[std::size_t(v)] = 0;
         for (std::size_t v = 0; v < to.size(); ++v) {
             if (to[v] < 0) continue;
             to[v] = int(parts.avatar.points.size());
             parts.avatar.points.push_back(parts.nodes[v]);
         }
         for (const auto& f : avatar_faces)
-            parts.avatar.triangles.push_back({to[std::size_t(f[0])], to[std::size_t(f[1])], to[std::size_t(f[2])]});
+            parts.avatar.triangles.push_back(
+                {to[std::size_t(f[0])], to[std::size_t(f[1])], to[std::size_t(f[2])]});
     }
 };
 
 } // namespace
 
-std::string garment_obj(const Garment& g, const Points& x, const WriteOptions& options, const std::string& mtl_name) {
+std::string garment_obj(const Garment& g, const Points& x, const WriteOptions& options,
+                        const std::string& mtl_name) {
     const std::vector<std::string> names = group_names(g);
     std::string out;
     append_header(out, options);
@@ -268,7 +284,8 @@ std::string garment_obj(const Garment& g, const Points& x, const WriteOptions& o
 std::string garment_mtl(const Garment& g, const WriteOptions& options) {
     std::string out = "# toile " TOILE_VERSION "\n";
     const std::vector<std::string> names = group_names(g);
-    for (std::size_t p = 0; p < names.size(); ++p) append_material(out, names[p], panel_colour(int(p)));
+    for (std::size_t p = 0; p < names.size(); ++p)
+        append_material(out, names[p], panel_colour(int(p)));
     if (options.avatar) append_material(out, "avatar", body_colour());
     return out;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-// Garments as Wavefront OBJ: `v` are nodes, `vt` are the vertices of the cut cloth, groups are panels. Described in
-// docs/outputs.md.
+// Garments as Wavefront OBJ: `v` are nodes, `vt` are the vertices of the cut cloth, groups are panels.
+// Described in docs/outputs.md.
 
 #include "io/garment_parts.h"
 #include "io/write_garment.h"

@@ -20,12 +20,12 @@ struct GarmentParts {
         int panel = 0;
     };
     Points nodes;
-    std::vector<Vec2> uv;               ///< as in the file, v upward
+    std::vector<Vec2> uv; ///< as in the file, v upward
     std::vector<Face> faces;
     std::vector<std::string> panel_names;
     std::vector<Stitch> stitches;
     TriMesh avatar;
-    std::optional<double> uv_metres;    ///< metres per unit of uv; nothing: the file does not say
+    std::optional<double> uv_metres;       ///< metres per unit of uv; nothing: the file does not say
     std::map<std::string, Vec2> uv_origin; ///< metres, by panel
 };
 

@@ -9,11 +9,13 @@
 namespace toile {
 
 struct PreviewOptions {
-    int height = 900; ///< pixels; the width follows
+    int height = 900; ///< pixels, 16 .. 8192; the width follows from the garment
 };
 
-/// A PNG picture of front, back and side beside each other: shaded cloth and body, panels told apart by shade,
-/// seams drawn. Ray-cast; needs no display.
+/// A PNG picture of front, back and side (the wearer's left) beside each other, without perspective and all
+/// in one scale: shaded cloth and body, panels told apart by shade, the wrong side paler, seams and cut edges
+/// drawn. Ray-cast (Embree); needs no display. `body` may be empty. Throws InputError when the file cannot be
+/// written.
 void write_preview(const std::string& path, const Garment& garment, const Points& x, const TriMesh& body,
                    const PreviewOptions& options = {});
 

@@ -15,19 +15,23 @@ namespace {
 
 constexpr std::uintmax_t max_bytes = std::uintmax_t(1) << 30;
 
-/// Texture coordinates of the corners become vertices: every (uv, node) pair once, in the order of the uv, so that
-/// a file with one node per uv keeps its order. Without uv there is one vertex per node.
+/// Texture coordinates of the corners become vertices: every (uv, node) pair once, in the order of the uv, so
+/// that a file with one node per uv keeps its order. Without uv there is one vertex per node.
 void make_vertices(const GarmentParts& parts, bool flat, Garment& g) {
     using Key = std::array<int, 2>;
-    const auto key = [&](const GarmentParts::Corner& c) { return flat ? Key{c.uv, c.node} : Key{c.node, c.node}; };
+    const auto key = [&](const GarmentParts::Corner& c) {
+        return flat ? Key{c.uv, c.node} : Key{c.node, c.node};
+    };
     std::vector<Key> keys;
     for (const auto& face : parts.faces)
-        for (const auto& c : face.corners) keys.push_back(key(c));
+        for (const auto& c : face.corners)
+            keys.push_back(key(c));
     std::sort(keys.begin(), keys.end());
     keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
     g.uv.assign(keys.size(), Vec2::Zero());
     g.panel_of_vertex.assign(keys.size(), -1);
-    for (const Key& k : keys) g.node_of_vertex.push_back(k[1]);
+    for (const Key& k : keys)
+        g.node_of_vertex.push_back(k[1]);
     for (const auto& face : parts.faces) {
         Triangle t{};
         for (int c = 0; c < 3; ++c) {
@@ -45,13 +49,15 @@ void make_vertices(const GarmentParts& parts, bool flat, Garment& g) {
 /// Only nodes that a triangle uses, in the file's order.
 void take_nodes(const GarmentParts& parts, const std::string& name, ReadGarment& out) {
     std::vector<int> to(parts.nodes.size(), -1);
-    for (const int n : out.garment.node_of_vertex) to[std::size_t(n)] = 0;
+    for (const int n : out.garment.node_of_vertex)
+        to[std::size_t(n)] = 0;
     for (std::size_t n = 0; n < to.size(); ++n) {
         if (to[n] < 0) continue;
         to[n] = int(out.x.size());
         out.x.push_back(parts.nodes[n]);
     }
-    for (int& n : out.garment.node_of_vertex) n = to[std::size_t(n)];
+    for (int& n : out.garment.node_of_vertex)
+        n = to[std::size_t(n)];
     const auto moved = [&](int n) {
         if (n < 0 || n >= int(to.size()) || to[std::size_t(n)] < 0)
             throw InputError(name + ": a stitch names node " + std::to_string(n) + ", which no triangle has");
@@ -76,11 +82,14 @@ double area_in_space(const Garment& g, const Points& x) {
     return sum;
 }
 
-double area_of(const Mat2& edges) { return std::abs(edges.determinant()) / 2; }
+double area_of(const Mat2& edges) {
+    return std::abs(edges.determinant()) / 2;
+}
 
 double area_of_pattern(const Garment& g) {
     double sum = 0;
-    for (const Mat2& e : g.rest.edges) sum += area_of(e);
+    for (const Mat2& e : g.rest.edges)
+        sum += area_of(e);
     return sum;
 }
 
@@ -88,7 +97,8 @@ void make_rest(Garment& g) {
     g.rest.edges.clear();
     for (const Triangle& t : g.triangles) {
         Mat2 edges;
-        edges << g.uv[std::size_t(t[1])] - g.uv[std::size_t(t[0])], g.uv[std::size_t(t[2])] - g.uv[std::size_t(t[0])];
+        edges << g.uv[std::size_t(t[1])] - g.uv[std::size_t(t[0])],
+            g.uv[std::size_t(t[2])] - g.uv[std::size_t(t[0])];
         g.rest.edges.push_back(edges);
     }
 }
@@ -106,7 +116,8 @@ void scale_pattern(const GarmentParts& parts, ReadGarment& out) {
     }
     std::vector<Vec2> origin(g.panel_names.size(), Vec2::Zero());
     for (std::size_t p = 0; p < origin.size(); ++p)
-        if (const auto it = parts.uv_origin.find(g.panel_names[p]); it != parts.uv_origin.end()) origin[p] = it->second;
+        if (const auto it = parts.uv_origin.find(g.panel_names[p]); it != parts.uv_origin.end())
+            origin[p] = it->second;
     for (std::size_t v = 0; v < g.uv.size(); ++v)
         g.uv[v] = scale * g.uv[v] + origin[std::size_t(g.panel_of_vertex[v])];
     make_rest(g);
@@ -119,13 +130,15 @@ int vertex_at(const Garment& g, int t, int n) {
     return -1;
 }
 
-/// Seams are where triangles meet in space but not in the pattern; eased where the pattern's two sides differ.
+/// Seams are where triangles meet in space but not in the pattern; eased where the pattern's two sides
+/// differ.
 void find_seams(Garment& g, bool flat) {
     g.seam_edge.assign(std::size_t(g.edges.size()), false);
     g.eased_triangle.assign(g.triangles.size(), false);
     std::vector<bool> stitched(std::size_t(g.node_count), false);
     for (const Stitch& s : g.stitches)
-        for (const int n : {s.a, s.b[0], s.b[1]}) stitched[std::size_t(n)] = true;
+        for (const int n : {s.a, s.b[0], s.b[1]})
+            stitched[std::size_t(n)] = true;
     for (int e = 0; e < g.edges.size(); ++e) {
         const auto [n0, n1] = g.edges.ends[std::size_t(e)];
         const int begin = g.edges.first[std::size_t(e)], end = g.edges.first[std::size_t(e) + 1];
@@ -142,17 +155,20 @@ void find_seams(Garment& g, bool flat) {
         }
         g.seam_edge[std::size_t(e)] = seam;
         if (!flat || !seam || longest <= 1.02 * shortest) continue;
-        for (int k = begin; k < end; ++k) g.eased_triangle[std::size_t(g.edges.incident[std::size_t(k)])] = true;
+        for (int k = begin; k < end; ++k)
+            g.eased_triangle[std::size_t(g.edges.incident[std::size_t(k)])] = true;
     }
 }
 
 } // namespace
 
 int panel_index(GarmentParts& parts, const std::string& panel) {
-    if (!parts.panel_names.empty() && parts.panel_names.back() == panel) return int(parts.panel_names.size()) - 1;
+    if (!parts.panel_names.empty() && parts.panel_names.back() == panel)
+        return int(parts.panel_names.size()) - 1;
     const auto it = std::find(parts.panel_names.begin(), parts.panel_names.end(), panel);
     if (it == parts.panel_names.end()) parts.panel_names.push_back(panel);
-    return int(std::find(parts.panel_names.begin(), parts.panel_names.end(), panel) - parts.panel_names.begin());
+    return int(std::find(parts.panel_names.begin(), parts.panel_names.end(), panel) -
+               parts.panel_names.begin());
 }
 
 ReadGarment assemble(GarmentParts parts, const std::string& name) {
@@ -161,8 +177,9 @@ ReadGarment assemble(GarmentParts parts, const std::string& name) {
     for (const auto& face : parts.faces) {
         const auto& c = face.corners;
         if (c[0].node == c[1].node || c[1].node == c[2].node || c[2].node == c[0].node)
-            throw InputError(name + ": a triangle of " + parts.panel_names[std::size_t(face.panel)] + " uses node " +
-                             std::to_string(c[0].node == c[1].node ? c[0].node : c[2].node) + " twice");
+            throw InputError(name + ": a triangle of " + parts.panel_names[std::size_t(face.panel)] +
+                             " uses node " + std::to_string(c[0].node == c[1].node ? c[0].node : c[2].node) +
+                             " twice");
     }
     ReadGarment out;
     out.flat = std::all_of(parts.faces.begin(), parts.faces.end(), [](const auto& face) {
@@ -188,8 +205,8 @@ ReadGarment assemble(GarmentParts parts, const std::string& name) {
 ReadGarment read_garment(const std::string& path) {
     const GarmentFormat format = garment_format(path);
     const std::string bytes = read_file(path, max_bytes);
-    return assemble(format == GarmentFormat::glb ? parse_garment_glb(bytes, path) : parse_garment_obj(bytes, path),
-                    path);
+    return assemble(
+        format == GarmentFormat::glb ? parse_garment_glb(bytes, path) : parse_garment_obj(bytes, path), path);
 }
 
 } // namespace toile

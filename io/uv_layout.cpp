@@ -16,14 +16,16 @@ using Boxes = std::vector<Eigen::AlignedBox2d>;
 
 Boxes panel_boxes(const Garment& g) {
     Boxes boxes(g.panel_names.size());
-    for (std::size_t v = 0; v < g.uv.size(); ++v) boxes[std::size_t(g.panel_of_vertex[v])].extend(g.uv[v]);
+    for (std::size_t v = 0; v < g.uv.size(); ++v)
+        boxes[std::size_t(g.panel_of_vertex[v])].extend(g.uv[v]);
     for (auto& box : boxes)
         if (box.isEmpty()) box.extend(Vec2(Vec2::Zero()));
     return boxes;
 }
 
 // Shelves of the given width, tallest panels first; returns the height used.
-double fill_shelves(const Boxes& boxes, const std::vector<int>& order, double width, std::vector<Vec2>& origin) {
+double fill_shelves(const Boxes& boxes, const std::vector<int>& order, double width,
+                    std::vector<Vec2>& origin) {
     double x = gap, y = gap, shelf = 0;
     for (const int p : order) {
         const Vec2 size = boxes[std::size_t(p)].sizes();

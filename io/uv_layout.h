@@ -12,7 +12,8 @@ struct UvLayout {
     std::vector<Vec2> origin; ///< metres, per panel
 };
 
-/// Panels side by side on shelves in a square, 1 cm apart; every vt lies in [0, 1] and no two panels' boxes overlap.
+/// Panels side by side on shelves in a square, 1 cm apart; every vt lies in [0, 1] and no two panels' boxes
+/// overlap.
 UvLayout lay_out_panels(const Garment& garment);
 
 /// Texture coordinates of a vertex, u along the weft and v along the warp.

@@ -19,11 +19,14 @@ namespace {
 // A link keeps pointing where it points: what it names is replaced, not the link.
 std::string target_of(const std::string& path) {
     std::error_code failed;
-    const fs::path target = fs::is_symlink(path, failed) ? fs::weakly_canonical(path, failed) : fs::path(path);
+    const fs::path target =
+        fs::is_symlink(path, failed) ? fs::weakly_canonical(path, failed) : fs::path(path);
     return failed ? path : target.string();
 }
 
-std::string neighbour(const std::string& path) { return target_of(path) + ".part" + std::to_string(getpid()); }
+std::string neighbour(const std::string& path) {
+    return target_of(path) + ".part" + std::to_string(getpid());
+}
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
     throw InputError("cannot write " + path + ": " + why);
@@ -39,7 +42,8 @@ File open_neighbour(const std::string& path) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) refuse(path, "it is a folder");
     // Renaming over a device would replace it by a file.
-    if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored)) refuse(path, "it is not a regular file");
+    if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
+        refuse(path, "it is not a regular file");
     File file(std::fopen(neighbour(path).c_str(), "wb"));
     if (!file) refuse(path, std::strerror(errno));
     return file;
@@ -78,7 +82,8 @@ std::string read_file(const std::string& path, std::uintmax_t max_bytes) {
     while (in.read(chunk, sizeof chunk) || in.gcount() > 0) {
         bytes.append(chunk, std::size_t(in.gcount()));
         if (bytes.size() > max_bytes)
-            throw InputError(path + " is larger than the " + std::to_string(max_bytes) + " bytes that are read");
+            throw InputError(path + " is larger than the " + std::to_string(max_bytes) +
+                             " bytes that are read");
     }
     return bytes;
 }

@@ -14,15 +14,20 @@ namespace toile {
 namespace {
 
 // Not inlined: GCC 12.2 drops the rounding where it vectorises double -> float -> double.
-[[gnu::noinline]] double nearest_float(double value) { return double(float(value)); }
+[[gnu::noinline]] double nearest_float(double value) {
+    return double(float(value));
+}
 
-std::string mtl_beside(const std::string& path) { return fs::path(path).replace_extension(".mtl").string(); }
+std::string mtl_beside(const std::string& path) {
+    return fs::path(path).replace_extension(".mtl").string();
+}
 
 } // namespace
 
 GarmentFormat garment_format(const std::string& path) {
     std::string ending = fs::path(path).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
     if (ending == ".obj") return GarmentFormat::obj;
     if (ending == ".glb") return GarmentFormat::glb;
     throw InputError(path + ": a garment file ends in .obj or .glb, not in '" + ending + "'");
@@ -33,7 +38,8 @@ std::vector<std::string> garment_files(const std::string& path) {
     return {path, mtl_beside(path)};
 }
 
-void write_garment(const std::string& path, const Garment& garment, const Points& x, const WriteOptions& options) {
+void write_garment(const std::string& path, const Garment& garment, const Points& x,
+                   const WriteOptions& options) {
     if (garment_format(path) == GarmentFormat::glb) {
         write_file(path, garment_glb(garment, x, options));
         return;
@@ -50,7 +56,8 @@ void write_mesh(const std::string& path, const TriMesh& mesh, const WriteOptions
 Points rounded_to_float(const Points& x) {
     Points rounded;
     rounded.reserve(x.size());
-    for (const Vec3& p : x) rounded.emplace_back(nearest_float(p.x()), nearest_float(p.y()), nearest_float(p.z()));
+    for (const Vec3& p : x)
+        rounded.emplace_back(nearest_float(p.x()), nearest_float(p.y()), nearest_float(p.z()));
     return rounded;
 }
 

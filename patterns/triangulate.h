@@ -8,31 +8,38 @@
 namespace toile {
 
 struct TriangulateOptions {
-    double edge_length = 0.01;      ///< metres, target mean edge of the finest level
+    double edge_length = 0.01; ///< metres, target mean edge of the finest level
     /// Local factor on edge_length at a place of a panel, in (0, 1]; empty: 1 everywhere.
     std::function<double(int panel, const Vec2& at)> size;
-    int levels = 1;                 ///< nested levels, each twice as coarse as the next
-    int smoothing = 10;             ///< Lloyd iterations
+    int levels = 1;     ///< nested levels, each twice as coarse as the next
+    int smoothing = 10; ///< Lloyd iterations
+};
+
+/// Two border segments sewn to each other, start to start and end to end.
+struct SewnSegment {
+    std::array<int, 2> a{}, b{};
 };
 
 /// One triangulation of all panels. Vertices of different panels are distinct.
 struct FlatLevel {
     double edge_length = 0;
-    std::vector<Vec2> points;            ///< panel coordinates, metres
+    std::vector<Vec2> points; ///< panel coordinates, metres
     std::vector<int> panel_of_point;
-    std::vector<Triangle> triangles;     ///< front (counter-clockwise seen from there) is the fabric's right side
+    std::vector<Triangle> triangles; ///< front (counter-clockwise seen from there) is the fabric's right side
     std::vector<int> panel_of_triangle;
     /// Vertices along outline edge e of panel p, from the edge's start to its end: border[p][e].
     std::vector<std::vector<std::vector<int>>> border;
     /// Vertices of seam s that are sewn to each other, in the order of its sides: stitches[s][k] = {a, b}.
     /// A dart's tip, sewn to itself, is left out.
     std::vector<std::vector<std::array<int, 2>>> stitches;
+    /// The border segments of seam s in the order of its sides, a dart's tip included.
+    std::vector<std::vector<SewnSegment>> sewn;
     /// Vertices along inner line l of panel p: lines[p][l].
     std::vector<std::vector<std::vector<int>>> lines;
 };
 
-/// A fine vertex as weights on a coarse triangle's corners (they sum to 1; slightly outside [0, 1] where a curved
-/// border bulges beyond its coarse chord).
+/// A fine vertex as weights on a coarse triangle's corners (they sum to 1; slightly outside [0, 1] where a
+/// curved border bulges beyond its coarse chord).
 struct Interpolation {
     std::array<int, 3> from{};
     std::array<double, 3> weight{};

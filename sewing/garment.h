@@ -66,6 +66,10 @@ Garment sew(const Pattern& pattern, const FlatLevel& flat);
 Garment close_seams(const Garment& garment, std::vector<int>* node_map = nullptr);
 
 /// Triangles over nodes with the given positions.
-std::vector<Triangle> node_triangles(const Garment& garment);
+inline std::vector<Triangle> node_triangles(const Garment& garment) {
+    std::vector<Triangle> triangles;
+    for (std::size_t t = 0; t < garment.triangles.size(); ++t) triangles.push_back(garment.nodes(int(t)));
+    return triangles;
+}
 
 } // namespace toile

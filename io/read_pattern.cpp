@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/read_pattern.h"
+
+#include "io/json.h"
+#include "patterns/curve.h"
+
+#include <Eigen/Geometry>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+namespace toile {
+namespace {
+
+constexpr int max_edges = 100'000;
+constexpr double max_metres = 1e6; ///< beyond this no number is a length; check() has a finer opinion
+
+/// How the file is to be understood.
+struct Conventions {
+    double metres = 0.01;           ///< per unit of the file
+    bool absolute_control = false;  ///< control points are panel coordinates, not relative to their edge
+    bool centre_panels = false;
+    bool normalise_loops = false;
+};
+
+struct Reader {
+    Conventions as;
+    Pattern pattern;
+    std::map<std::string, int> panel_index;
+    int edges = 0;
+};
+
+Conventions read_conventions(const JsonView& root) {
+    const JsonView properties = root.at("properties");
+    Conventions c;
+    c.metres = 1 / properties.at("units_in_meter").number(1e-3, 1e6);
+    if (properties.has("curvature_coords")) {
+        const JsonView coords = properties.at("curvature_coords");
+        const std::string word = coords.string();
+        if (word != "relative" && word != "absolute") coords.fail("\"relative\" or \"absolute\"");
+        c.absolute_control = word == "absolute";
+    }
+    if (properties.has("normalize_panel_translation"))
+        c.centre_panels = properties.at("normalize_panel_translation").boolean();
+    c.normalise_loops = !properties.has("normalized_edge_loops") || !properties.at("normalized_edge_loops").boolean();
+    return c;
+}
+
+double read_length(const JsonView& v, double metres) {
+    const double x = v.number() * metres;
+    if (std::abs(x) > max_metres) v.fail("a length");
+    return x;
+}
+
+Vec2 read_point(const JsonView& v, double metres) {
+    v.expect_array(2, 2);
+    return {read_length(v.at(0, "coordinate"), metres), read_length(v.at(1, "coordinate"), metres)};
+}
+
+Vec3 read_translation(const JsonView& v, double metres) {
+    v.expect_array(3, 3);
+    Vec3 t;
+    for (int k = 0; k < 3; ++k)
+        t[k] = read_length(v.at(k, "coordinate"), metres);
+    return t;
+}
+
+/// Degrees about x, y, z; z is applied last.
+Mat3 read_rotation(const JsonView& v) {
+    v.expect_array(3, 3);
+    const auto radians = [&](int k) { return v.at(k, "angle").number(-1e6, 1e6) * (EIGEN_PI / 180); };
+    const Vec3 r(radians(0), radians(1), radians(2));
+    using Turn = Eigen::AngleAxisd;
+    return (Turn(r.z(), Vec3::UnitZ()) * Turn(r.y(), Vec3::UnitY()) * Turn(r.x(), Vec3::UnitX())).toRotationMatrix();
+}
+
+Vec2 read_control(const JsonView& v, const Edge& edge, const Conventions& as) {
+    if (as.absolute_control) return read_point(v, as.metres);
+    const Vec2 uv = read_point(v, 1), along = edge.end - edge.start;
+    return edge.start + uv.x() * along + uv.y() * Vec2(-along.y(), along.x());
+}
+
+Curve read_arc(const JsonView& params, const Conventions& as) {
+    params.expect_array(3, 3);
+    const JsonView radius = params.at(0, "parameter");
+    const double r = read_length(radius, as.metres);
+    if (!(r > 0)) radius.fail("a radius above 0");
+    return Arc{r, params.at(1, "parameter").boolean(), params.at(2, "parameter").boolean()};
+}
+
+Curve read_curve(const JsonView& v, const Edge& edge, const Conventions& as) {
+    if (v.value().is_array()) return Quadratic{read_control(v, edge, as)}; // the form of 2021
+    const JsonView type = v.at("type"), params = v.at("params");
+    const std::string kind = type.string();
+    if (kind == "circle") return read_arc(params, as);
+    const std::size_t controls = kind == "quadratic" ? 1 : kind == "cubic" ? 2 : 0;
+    if (controls == 0) type.fail("\"quadratic\", \"cubic\" or \"circle\"");
+    params.expect_array(controls, controls);
+    const Vec2 first = read_control(params.at(0, "control point"), edge, as);
+    if (controls == 1) return Quadratic{first};
+    return Cubic{first, read_control(params.at(1, "control point"), edge, as)};
+}
+
+Edge read_edge(const JsonView& v, const std::vector<Vec2>& vertices, const Conventions& as) {
+    v.expect_object();
+    const JsonView ends = v.at("endpoints");
+    ends.expect_array(2, 2);
+    const auto vertex = [&](int k) {
+        const JsonView number = ends.at(k, "number");
+        const double i = number.value().is_number_integer() ? number.number() : -1;
+        if (i < 0 || i >= double(vertices.size()))
+            number.fail("the number of a vertex, 0 to " + std::to_string(int(vertices.size()) - 1));
+        return vertices[std::size_t(i)];
+    };
+    Edge edge{vertex(0), vertex(1), Straight{}, {}};
+    if (v.has("curvature")) edge.curve = read_curve(v.at("curvature"), edge, as);
+    if (v.has("label")) edge.label = v.at("label").string();
+    return edge;
+}
+
+/// Moves the panel's origin to the mean of its vertices, as the files' own loader does: the translation takes up
+/// the shift before rotation.
+void centre(std::vector<Vec2>& vertices, Vec3& translation) {
+    Vec2 mean = Vec2::Zero();
+    for (const Vec2& v : vertices)
+        mean += v / double(vertices.size());
+    for (Vec2& v : vertices)
+        v -= mean;
+    translation.head<2>() += mean;
+}
+
+Vec2 mirrored(const Vec2& p) { return {-p.x(), p.y()}; }
+
+Curve mirrored(const Curve& curve) {
+    if (auto* q = std::get_if<Quadratic>(&curve)) return Quadratic{mirrored(q->control)};
+    if (auto* k = std::get_if<Cubic>(&curve)) return Cubic{mirrored(k->control0), mirrored(k->control1)};
+    if (auto* a = std::get_if<Arc>(&curve)) return Arc{a->radius, a->large, !a->right};
+    return curve;
+}
+
+/// Files before 2023 draw some panels clockwise and mean the loader to turn them over: mirrored in the plane and
+/// turned by 180 degrees about y, which leaves the cloth where it is, and with the x of the translation negated,
+/// which does not (the files count on it). Edge numbers stay those of the file.
+void turn_over(Panel& panel) {
+    for (Edge& e : panel.outline)
+        e = {mirrored(e.start), mirrored(e.end), mirrored(e.curve), e.label};
+    panel.placement.translation.x() *= -1;
+    panel.placement.rotation = panel.placement.rotation * Vec3(-1, 1, -1).asDiagonal();
+}
+
+Panel read_panel(const JsonView& v, const std::string& name, Reader& reader) {
+    const Conventions& as = reader.as;
+    Panel panel;
+    panel.name = name;
+    panel.placement.rotation = read_rotation(v.at("rotation"));
+    panel.placement.translation = read_translation(v.at("translation"), as.metres);
+    if (v.has("label")) panel.label = v.at("label").string();
+
+    const JsonView points = v.at("vertices");
+    points.expect_array(2);
+    std::vector<Vec2> vertices;
+    for (std::size_t i = 0; i < points.value().size(); ++i)
+        vertices.push_back(read_point(v.below(points.value()[i], "vertex " + std::to_string(i)), as.metres));
+    if (as.centre_panels) centre(vertices, panel.placement.translation);
+
+    const JsonView edges = v.at("edges");
+    edges.expect_array(1);
+    reader.edges += int(std::min<std::size_t>(edges.value().size(), max_edges + 1));
+    if (reader.edges > max_edges)
+        throw InputError(v.place() + ": the pattern has more than " + std::to_string(max_edges) +
+                         " edges, the most that is read.");
+    for (std::size_t i = 0; i < edges.value().size(); ++i)
+        panel.outline.push_back(read_edge(v.below(edges.value()[i], "edge " + std::to_string(i)), vertices, as));
+    if (as.normalise_loops && signed_area(panel.outline) < 0) turn_over(panel);
+    return panel;
+}
+
+EdgeSpan read_stitch_side(const JsonView& v, const Reader& reader) {
+    v.expect_object();
+    const JsonView name = v.at("panel");
+    const auto found = reader.panel_index.find(name.string());
+    if (found == reader.panel_index.end()) name.fail("the name of a panel");
+    const int count = int(reader.pattern.panels[found->second].outline.size());
+    const JsonView number = v.at("edge");
+    const double edge = number.value().is_number_integer() ? number.number() : -1;
+    if (edge < 0 || edge >= count)
+        number.fail("the number of an edge of panel " + quoted(found->first) + ", 0 to " + std::to_string(count - 1));
+    return {found->second, int(edge), 0, 1};
+}
+
+Seam read_stitch(const JsonView& v, int number, const Reader& reader) {
+    v.expect_array(2, 3);
+    Seam seam;
+    EdgeSpan a = read_stitch_side(v.below(v.value()[0], "side 0"), reader);
+    EdgeSpan b = read_stitch_side(v.below(v.value()[1], "side 1"), reader);
+    seam.faces = SeamFaces::right_to_right;
+    if (v.value().size() == 3) {
+        const JsonView word = v.below(v.value()[2], "third member");
+        if (word.string() != "right_wrong") word.fail("\"right_wrong\"");
+        seam.faces = SeamFaces::right_to_wrong;
+    } else {
+        std::swap(b.t0, b.t1); // the end of a meets the start of b
+    }
+    const auto called = [&](const EdgeSpan& s) {
+        return reader.pattern.panels[s.panel].name + "." + std::to_string(s.edge);
+    };
+    seam.name = "seam " + std::to_string(number) + " (" + called(a) + " to " + called(b) + ")";
+    seam.a = {a};
+    seam.b = {b};
+    return seam;
+}
+
+void read_panels(const JsonView& pattern, const std::string& file, Reader& reader) {
+    const JsonView panels = pattern.at("panels");
+    panels.expect_object();
+    if (panels.value().empty()) throw InputError(file + " has no panels.");
+    for (const auto& [name, value] : panels.value().items()) {
+        const JsonView panel(value, file + ": panel " + quoted(name));
+        panel.expect_object();
+        reader.panel_index[name] = int(reader.pattern.panels.size());
+        reader.pattern.panels.push_back(read_panel(panel, name, reader));
+    }
+}
+
+void read_stitches(const JsonView& pattern, const std::string& file, Reader& reader) {
+    const JsonView stitches = pattern.at("stitches");
+    stitches.expect_array(0, max_edges);
+    for (std::size_t i = 0; i < stitches.value().size(); ++i) {
+        const JsonView stitch(stitches.value()[i], file + ": stitch " + std::to_string(i));
+        reader.pattern.seams.push_back(read_stitch(stitch, int(i), reader));
+    }
+}
+
+Pattern read(const std::string& text, const std::string& name) {
+    const Json json = parse_json(text, name);
+    const JsonView root(json, name);
+    if (!json.is_object()) root.fail("a GarmentCode specification (an object with \"pattern\" and \"properties\")");
+    Reader reader;
+    const JsonView pattern = root.at("pattern");
+    reader.as = read_conventions(root);
+    read_panels(pattern, name, reader);
+    read_stitches(pattern, name, reader);
+    return std::move(reader.pattern);
+}
+
+constexpr std::uintmax_t max_bytes = JsonLimits{}.max_bytes;
+
+} // namespace
+
+Pattern read_pattern(std::istream& in, const std::string& name) {
+    Pattern pattern = read(read_text(in, name, max_bytes), name);
+    pattern.name = std::filesystem::path(name).stem().string();
+    return pattern;
+}
+
+Pattern read_pattern(const std::string& path) {
+    Pattern pattern = read(read_text(path, max_bytes), path);
+    pattern.name = std::filesystem::path(path).stem().string();
+    return pattern;
+}
+
+} // namespace toile

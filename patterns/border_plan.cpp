@@ -349,15 +349,17 @@ struct Demand {
     std::vector<int> least; // per level
 };
 
-/// Squared logarithm of spacing over target, summed over levels; a coarser level counts a quarter of the next
-/// one.
+/// Squared logarithm of spacing over target, summed over levels, each counting half of the next finer one. A level
+/// off by more than a factor of 1.5 costs much more, unless it has a single segment already: meshes adapt to a
+/// little, but not to a border twice as fine as their inside.
 double misfit(double segments, int base, int halvings, int levels) {
     double sum = 0, weight = 1, wanted = segments;
     for (int level = levels - 1; level >= 0; --level) {
         const int n = base << std::max(0, halvings - (levels - 1 - level));
         const double ratio = std::log2(n / wanted);
-        sum += weight * ratio * ratio;
-        weight /= 4, wanted /= 2;
+        const bool far = std::abs(ratio) > std::log2(1.5) && !(n == 1 && ratio > 0);
+        sum += weight * ratio * ratio * (far ? 10 : 1);
+        weight /= 2, wanted /= 2;
     }
     return sum;
 }

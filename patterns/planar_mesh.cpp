@@ -334,20 +334,30 @@ bool all_on_border(const PlanarMesh& mesh, int a, int b, int c) {
     return mesh.on_border(a) && mesh.on_border(b) && mesh.on_border(c);
 }
 
-/// Flips edges of triangles with three border points where that leaves fewer of them and angles above
-/// `cosine`.
+/// Sharpest corner of the triangles around an inner point.
+double worst_around(PlanarMesh& mesh, int point) {
+    std::vector<int> around;
+    star(mesh, point, around);
+    return worst_around(mesh, point, mesh.points[point], around);
+}
+
+/// Flips the edge between a triangle with three border points and its neighbour's inner point, and moves that point
+/// to suit; undone unless all angles around it stay blunter than `cosine`.
 void open_ears(PlanarMesh& mesh, double cosine) {
+    std::vector<int> around;
     for (int t = 0; t < int(mesh.triangles.size()); ++t)
         for (int k = 0; k < 3; ++k) {
             Quad e;
             if (!quad_at(mesh, t, k, e) || !convex(mesh, e)) continue;
-            const int before = all_on_border(mesh, e.a, e.p, e.q) + all_on_border(mesh, e.b, e.p, e.q);
-            const int after = all_on_border(mesh, e.a, e.p, e.b) + all_on_border(mesh, e.a, e.q, e.b);
-            if (after >= before) continue;
-            const auto& p = mesh.points;
-            const double worst =
-                std::max(sharpness(p[e.a], p[e.p], p[e.b]), sharpness(p[e.b], p[e.q], p[e.a]));
-            if (worst < cosine) flip(mesh, e);
+            if (!all_on_border(mesh, e.a, e.p, e.q) || mesh.on_border(e.b)) continue;
+            const Vec2 kept = mesh.points[e.b];
+            flip(mesh, e);
+            if (worst_around(mesh, e.b) < cosine) break;
+            blunt(mesh, e.b, around);
+            if (worst_around(mesh, e.b) < cosine) break;
+            mesh.points[e.b] = kept;
+            Quad back;
+            if (quad_at(mesh, t, 1, back)) flip(mesh, back);
         }
 }
 

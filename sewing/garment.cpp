@@ -189,11 +189,4 @@ Garment close_seams(const Garment& garment, std::vector<int>* node_map) {
     return g;
 }
 
-std::vector<Triangle> node_triangles(const Garment& garment) {
-    std::vector<Triangle> out;
-    for (int t = 0; t < int(garment.triangles.size()); ++t)
-        out.push_back(garment.nodes(t));
-    return out;
-}
-
 } // namespace toile

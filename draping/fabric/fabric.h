@@ -7,10 +7,16 @@
 namespace toile {
 
 /// What a cloth weighs and resists, per area or length, in its grain directions. SI units.
+///
+/// Bending energy per area, with k_u and k_v the curvatures along warp and weft and k_uv the twist:
+///   1/2 (bend_warp k_u^2 + bend_weft k_v^2 + 2 c k_u k_v + 4 bend_twist k_uv^2),
+///   c = bend_poisson sqrt(bend_warp bend_weft).
+/// A sheet of stiffness D that is the same in all directions has bend_twist = D (1 - bend_poisson) / 2, and the
+/// stiffness measured at 45 degrees is (bend_warp + bend_weft + 2 c + 4 bend_twist) / 4.
 struct Fabric {
     std::string name;
     double density = 0;        ///< kg/m2
-    double stretch_warp = 0;   ///< N/m
+    double stretch_warp = 0;   ///< N/m, of a strip pulled along the warp and free to contract
     double stretch_weft = 0;   ///< N/m
     double poisson = 0;        ///< major Poisson ratio: contraction of the weft under warp tension, [0, 0.5)
     double shear = 0;          ///< N/m per rad of shear angle

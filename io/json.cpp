@@ -2,8 +2,7 @@
 #include "io/json.h"
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
+#include <istream>
 #include <set>
 #include <sstream>
 
@@ -37,10 +36,10 @@ public:
         if (event == Event::object_end || event == Event::array_end) return true;
         if (depth >= limits_.max_depth)
             throw InputError(name_ + " is nested more than " + std::to_string(limits_.max_depth) +
-                             " deep, which no pattern needs.");
+                             " deep, which no pattern needs");
         if (++values_ > limits_.max_values)
             throw InputError(name_ + " holds more than " + std::to_string(limits_.max_values) +
-                             " values, the most that is read.");
+                             " values, the most that is read");
         if (event == Event::object_start) keys_.emplace_back();
         if (event == Event::key) add_key(value.get_ref<const std::string&>());
         return true;
@@ -49,10 +48,10 @@ public:
 private:
     void add_key(const std::string& key) {
         if (!keys_.back().insert(key).second)
-            throw InputError(name_ + " gives the key " + quoted(key) + " twice in one object.");
+            throw InputError(name_ + " gives the key " + quoted(key) + " twice in one object");
         if (keys_.back().size() > limits_.max_keys)
             throw InputError(name_ + " has an object of more than " + std::to_string(limits_.max_keys) +
-                             " keys, the most that is read.");
+                             " keys, the most that is read");
     }
 
     const std::string& name_;
@@ -81,34 +80,24 @@ std::string read_text(std::istream& in, const std::string& name, std::uintmax_t 
     while (in.read(buffer, sizeof buffer), in.gcount() > 0) {
         text.append(buffer, std::size_t(in.gcount()));
         if (text.size() > max_bytes)
-            throw InputError(name + " is larger than " + megabytes(max_bytes) + ", the most that is read.");
+            throw InputError(name + " is larger than " + megabytes(max_bytes) + ", the most that is read");
     }
-    if (in.bad()) throw InputError(name + " cannot be read to its end.");
+    if (in.bad()) throw InputError(name + " cannot be read to its end");
     return text;
-}
-
-std::string read_text(const std::string& path, std::uintmax_t max_bytes) {
-    std::error_code error;
-    const auto status = std::filesystem::status(path, error);
-    if (!std::filesystem::exists(status)) throw InputError(path + " does not exist.");
-    if (std::filesystem::is_directory(status)) throw InputError(path + " is a folder; a file was expected.");
-    std::ifstream in(path, std::ios::binary);
-    if (!in) throw InputError(path + " cannot be opened for reading.");
-    return read_text(in, path, max_bytes);
 }
 
 Json parse_json(const std::string& text, const std::string& name, const JsonLimits& limits) {
     if (text.find_first_not_of(" \t\r\n") == std::string::npos)
-        throw InputError(name + " is empty; JSON was expected.");
+        throw InputError(name + " is empty; JSON was expected");
     Guard guard(name, limits);
     try {
         return Json::parse(text, [&guard](int depth, nlohmann::json::parse_event_t event, Json& value) {
             return guard(depth, event, value);
         });
     } catch (const Json::parse_error& e) {
-        throw InputError(name + " is not valid JSON at " + line_and_column(text, e.byte) + ": " + reason(e) + ".");
+        throw InputError(name + " is not valid JSON at " + line_and_column(text, e.byte) + ": " + reason(e));
     } catch (const Json::exception& e) {
-        throw InputError(name + " is not valid JSON: " + reason(e) + ".");
+        throw InputError(name + " is not valid JSON: " + reason(e));
     }
 }
 
@@ -132,7 +121,7 @@ std::string shown(const Json& value) {
 }
 
 void JsonView::fail(const std::string& expected) const {
-    throw InputError(place_ + " must be " + expected + ", but is " + shown(*value_) + ".");
+    throw InputError(place_ + " must be " + expected + ", but is " + shown(*value_));
 }
 
 bool JsonView::has(const char* key) const {
@@ -143,7 +132,7 @@ bool JsonView::has(const char* key) const {
 JsonView JsonView::at(const char* key) const {
     expect_object();
     const auto it = value_->find(key);
-    if (it == value_->end()) throw InputError(place_ + " lacks the key \"" + key + "\".");
+    if (it == value_->end()) throw InputError(place_ + " lacks the key \"" + key + "\"");
     return {*it, place_ + ", \"" + key + "\""};
 }
 
@@ -172,7 +161,7 @@ void JsonView::expect_keys(std::initializer_list<const char*> keys) const {
             known = known || key == k;
             list += (list.empty() ? "" : ", ") + std::string(k);
         }
-        if (!known) throw InputError(place_ + " has the unknown key " + quoted(key) + "; known are: " + list + ".");
+        if (!known) throw InputError(place_ + " has the unknown key " + quoted(key) + "; known are: " + list);
     }
 }
 

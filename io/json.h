@@ -24,8 +24,7 @@ struct JsonLimits {
     std::size_t max_keys = 10'000; ///< in one object
 };
 
-/// The whole of a text file. Throws InputError when it cannot be opened, is no file, or is larger than max_bytes.
-std::string read_text(const std::string& path, std::uintmax_t max_bytes);
+/// The whole stream. Throws InputError when it cannot be read or is larger than max_bytes.
 std::string read_text(std::istream& in, const std::string& name, std::uintmax_t max_bytes);
 
 /// Parses `text`; `name` is what messages call it. Throws InputError: empty, not JSON (with line and column),

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/read_pattern.h"
 
+#include "io/companion.h"
 #include "io/json.h"
+#include "io/read_edge.h"
+#include "io/write_file.h"
 #include "patterns/curve.h"
 
 #include <Eigen/Geometry>
@@ -14,12 +17,9 @@ namespace toile {
 namespace {
 
 constexpr int max_edges = 100'000;
-constexpr double max_metres = 1e6; ///< beyond this no number is a length; check() has a finer opinion
 
 /// How the file is to be understood.
-struct Conventions {
-    double metres = 0.01;           ///< per unit of the file
-    bool absolute_control = false;  ///< control points are panel coordinates, not relative to their edge
+struct Conventions : EdgeConventions {
     bool centre_panels = false;
     bool normalise_loops = false;
 };
@@ -34,7 +34,7 @@ struct Reader {
 Conventions read_conventions(const JsonView& root) {
     const JsonView properties = root.at("properties");
     Conventions c;
-    c.metres = 1 / properties.at("units_in_meter").number(1e-3, 1e6);
+    c.metres = read_unit(properties);
     if (properties.has("curvature_coords")) {
         const JsonView coords = properties.at("curvature_coords");
         const std::string word = coords.string();
@@ -45,17 +45,6 @@ Conventions read_conventions(const JsonView& root) {
         c.centre_panels = properties.at("normalize_panel_translation").boolean();
     c.normalise_loops = !properties.has("normalized_edge_loops") || !properties.at("normalized_edge_loops").boolean();
     return c;
-}
-
-double read_length(const JsonView& v, double metres) {
-    const double x = v.number() * metres;
-    if (std::abs(x) > max_metres) v.fail("a length");
-    return x;
-}
-
-Vec2 read_point(const JsonView& v, double metres) {
-    v.expect_array(2, 2);
-    return {read_length(v.at(0, "coordinate"), metres), read_length(v.at(1, "coordinate"), metres)};
 }
 
 Vec3 read_translation(const JsonView& v, double metres) {
@@ -73,50 +62,6 @@ Mat3 read_rotation(const JsonView& v) {
     const Vec3 r(radians(0), radians(1), radians(2));
     using Turn = Eigen::AngleAxisd;
     return (Turn(r.z(), Vec3::UnitZ()) * Turn(r.y(), Vec3::UnitY()) * Turn(r.x(), Vec3::UnitX())).toRotationMatrix();
-}
-
-Vec2 read_control(const JsonView& v, const Edge& edge, const Conventions& as) {
-    if (as.absolute_control) return read_point(v, as.metres);
-    const Vec2 uv = read_point(v, 1), along = edge.end - edge.start;
-    return edge.start + uv.x() * along + uv.y() * Vec2(-along.y(), along.x());
-}
-
-Curve read_arc(const JsonView& params, const Conventions& as) {
-    params.expect_array(3, 3);
-    const JsonView radius = params.at(0, "parameter");
-    const double r = read_length(radius, as.metres);
-    if (!(r > 0)) radius.fail("a radius above 0");
-    return Arc{r, params.at(1, "parameter").boolean(), params.at(2, "parameter").boolean()};
-}
-
-Curve read_curve(const JsonView& v, const Edge& edge, const Conventions& as) {
-    if (v.value().is_array()) return Quadratic{read_control(v, edge, as)}; // the form of 2021
-    const JsonView type = v.at("type"), params = v.at("params");
-    const std::string kind = type.string();
-    if (kind == "circle") return read_arc(params, as);
-    const std::size_t controls = kind == "quadratic" ? 1 : kind == "cubic" ? 2 : 0;
-    if (controls == 0) type.fail("\"quadratic\", \"cubic\" or \"circle\"");
-    params.expect_array(controls, controls);
-    const Vec2 first = read_control(params.at(0, "control point"), edge, as);
-    if (controls == 1) return Quadratic{first};
-    return Cubic{first, read_control(params.at(1, "control point"), edge, as)};
-}
-
-Edge read_edge(const JsonView& v, const std::vector<Vec2>& vertices, const Conventions& as) {
-    v.expect_object();
-    const JsonView ends = v.at("endpoints");
-    ends.expect_array(2, 2);
-    const auto vertex = [&](int k) {
-        const JsonView number = ends.at(k, "number");
-        const double i = number.value().is_number_integer() ? number.number() : -1;
-        if (i < 0 || i >= double(vertices.size()))
-            number.fail("the number of a vertex, 0 to " + std::to_string(int(vertices.size()) - 1));
-        return vertices[std::size_t(i)];
-    };
-    Edge edge{vertex(0), vertex(1), Straight{}, {}};
-    if (v.has("curvature")) edge.curve = read_curve(v.at("curvature"), edge, as);
-    if (v.has("label")) edge.label = v.at("label").string();
-    return edge;
 }
 
 /// Moves the panel's origin to the mean of its vertices, as the files' own loader does: the translation takes up
@@ -157,11 +102,7 @@ Panel read_panel(const JsonView& v, const std::string& name, Reader& reader) {
     panel.placement.translation = read_translation(v.at("translation"), as.metres);
     if (v.has("label")) panel.label = v.at("label").string();
 
-    const JsonView points = v.at("vertices");
-    points.expect_array(2);
-    std::vector<Vec2> vertices;
-    for (std::size_t i = 0; i < points.value().size(); ++i)
-        vertices.push_back(read_point(v.below(points.value()[i], "vertex " + std::to_string(i)), as.metres));
+    std::vector<Vec2> vertices = read_vertices(v.at("vertices"), as.metres);
     if (as.centre_panels) centre(vertices, panel.placement.translation);
 
     const JsonView edges = v.at("edges");
@@ -169,7 +110,7 @@ Panel read_panel(const JsonView& v, const std::string& name, Reader& reader) {
     reader.edges += int(std::min<std::size_t>(edges.value().size(), max_edges + 1));
     if (reader.edges > max_edges)
         throw InputError(v.place() + ": the pattern has more than " + std::to_string(max_edges) +
-                         " edges, the most that is read.");
+                         " edges, the most that is read");
     for (std::size_t i = 0; i < edges.value().size(); ++i)
         panel.outline.push_back(read_edge(v.below(edges.value()[i], "edge " + std::to_string(i)), vertices, as));
     if (as.normalise_loops && signed_area(panel.outline) < 0) turn_over(panel);
@@ -214,7 +155,7 @@ Seam read_stitch(const JsonView& v, int number, const Reader& reader) {
 void read_panels(const JsonView& pattern, const std::string& file, Reader& reader) {
     const JsonView panels = pattern.at("panels");
     panels.expect_object();
-    if (panels.value().empty()) throw InputError(file + " has no panels.");
+    if (panels.value().empty()) throw InputError(file + " has no panels");
     for (const auto& [name, value] : panels.value().items()) {
         const JsonView panel(value, file + ": panel " + quoted(name));
         panel.expect_object();
@@ -255,8 +196,10 @@ Pattern read_pattern(std::istream& in, const std::string& name) {
 }
 
 Pattern read_pattern(const std::string& path) {
-    Pattern pattern = read(read_text(path, max_bytes), path);
+    Pattern pattern = read(read_file(path, max_bytes), path);
     pattern.name = std::filesystem::path(path).stem().string();
+    const std::string companion = companion_path(path);
+    if (std::filesystem::exists(companion)) read_companion(companion, pattern);
     return pattern;
 }
 

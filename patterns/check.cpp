@@ -40,6 +40,11 @@ std::string called(const Panel& panel) {
     return "panel \"" + panel.name.substr(0, most) + (panel.name.size() > most ? "...\"" : "\"");
 }
 
+std::string capital(std::string text) {
+    if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] += 'A' - 'a';
+    return text;
+}
+
 /// A loop or line of a panel with the words messages use for it and its edges.
 struct Part {
     const Loop* edges;
@@ -99,7 +104,7 @@ public:
     Checker(const Pattern& pattern, const CheckOptions& options) : pattern_(pattern), options_(options) {}
 
     std::vector<Issue> run() {
-        if (pattern_.panels.empty()) error("The pattern has no panels.");
+        if (pattern_.panels.empty()) error("The pattern has no panels");
         if (!check_edge_count()) return issues_;
         for (const Panel& panel : pattern_.panels)
             check_panel(panel);
@@ -112,7 +117,7 @@ public:
             check_elastic(e);
         for (const Pin& p : pattern_.pins)
             check_span(p.span, "A pin");
-        if (dropped_ > 0) issues_.push_back({Severity::note, std::to_string(dropped_) + " more issues are not listed."});
+        if (dropped_ > 0) issues_.push_back({Severity::note, std::to_string(dropped_) + " more issues are not listed"});
         return std::move(issues_);
     }
 
@@ -131,7 +136,7 @@ private:
                 edges += part.edges->size();
         if (edges <= std::size_t(options_.max_edges)) return true;
         error("The pattern has " + std::to_string(edges) + " edges; at most " + std::to_string(options_.max_edges) +
-              " are accepted.");
+              " are accepted");
         return false;
     }
 
@@ -148,14 +153,14 @@ private:
     bool check_placement(const Panel& panel) {
         const Placement& at = panel.placement;
         if (!at.rotation.allFinite() || !at.translation.allFinite() || !std::isfinite(panel.grain)) {
-            error("The placement or grain of " + called(panel) + " is not finite; numbers were expected.");
+            error("The placement or grain of " + called(panel) + " is not finite; numbers were expected");
             return false;
         }
         if ((at.rotation * at.rotation.transpose() - Mat3::Identity()).norm() > 1e-6 || at.rotation.determinant() < 0)
-            error("The rotation of " + called(panel) + " is not a rotation.");
+            error("The rotation of " + called(panel) + " is not a rotation");
         if (at.translation.norm() > options_.max_translation)
-            error("The " + called(panel) + " starts " + said(at.translation.norm()) +
-                  " away from the origin; check the units.");
+            error(capital(called(panel)) + " starts " + said(at.translation.norm()) +
+                  " away from the origin; check the units");
         return true;
     }
 
@@ -164,13 +169,13 @@ private:
         const Loop& loop = *part.edges;
         const std::string in = "In " + called(panel) + ", " + part.prefix;
         if (loop.empty()) {
-            error(in + "there are no edges.");
+            error(in + "there are no edges");
             return false;
         }
         bool sound = true;
         for (std::size_t i = 0; i < loop.size(); ++i)
             if (!finite(loop[i])) {
-                error(in + "edge " + std::to_string(i) + " has a coordinate that is not a finite number.");
+                error(in + "edge " + std::to_string(i) + " has a coordinate that is not a finite number");
                 sound = false;
             }
         if (!sound) return false;
@@ -180,7 +185,7 @@ private:
             const std::size_t next = last ? 0 : i + 1;
             if (loop[i].end == loop[next].start) continue;
             error(in + "edge " + std::to_string(i) + " ends at " + said(loop[i].end) + " but edge " +
-                  std::to_string(next) + " starts at " + said(loop[next].start) + "; the loop is open.");
+                  std::to_string(next) + " starts at " + said(loop[next].start) + "; the loop is open");
             sound = false;
         }
         for (std::size_t i = 0; i < loop.size(); ++i)
@@ -193,14 +198,14 @@ private:
         if (auto* arc = std::get_if<Arc>(&e.curve)) {
             if (arc->radius < 0.5 * chord * (1 - 1e-3) || !(arc->radius > 0)) {
                 error(name + " is an arc of radius " + said(arc->radius) + " between points " + said(chord) +
-                      " apart; the radius must be at least half of that.");
+                      " apart; the radius must be at least half of that");
                 return false;
             }
         }
         const double l = length(e);
         if (l >= options_.min_edge) return true;
         error(name + " is degenerate: it is " + said(l) + " long; at least " + said(options_.min_edge) +
-              " was expected.");
+              " was expected");
         return false;
     }
 
@@ -212,16 +217,16 @@ private:
         const double size = extent.size();
         largest_ = std::max(largest_, size);
         if (size <= options_.max_extent) return true;
-        error("The " + called(panel) + " measures " + said(size) + "; at most " + said(options_.max_extent) +
-              " was expected: check the units.");
+        error(capital(called(panel)) + " measures " + said(size) + "; at most " + said(options_.max_extent) +
+              " was expected: check the units");
         return false;
     }
 
     bool check_area(const Panel& panel) {
         const double area = std::abs(signed_area(panel.outline)), round = length(panel.outline);
         if (area > 1e-6 * round * round) return true;
-        error("The " + called(panel) + " encloses no area: it has " + std::to_string(panel.outline.size()) +
-              " edges round " + formatted("%.3g cm2", area * 1e4) + "; at least three edges round a surface were expected.");
+        error(capital(called(panel)) + " encloses no area: it has " + std::to_string(panel.outline.size()) +
+              " edges round " + formatted("%.3g cm2", area * 1e4) + "; at least three edges round a surface were expected");
         return false;
     }
 
@@ -234,7 +239,7 @@ private:
         for (std::size_t i = 0; i < std::min(most, found.size()); ++i)
             report_crossing(panel, parts, found[i]);
         if (found.size() > most)
-            error("The " + called(panel) + " crosses itself in " + std::to_string(found.size() - most) + " more pairs of edges.");
+            error(capital(called(panel)) + " crosses itself in " + std::to_string(found.size() - most) + " more pairs of edges");
         return found.empty();
     }
 
@@ -243,7 +248,7 @@ private:
         const std::string a = parts[c.chain_a].prefix + "edge " + std::to_string(c.edge_a);
         const std::string b = parts[c.chain_b].prefix + "edge " + std::to_string(c.edge_b);
         const std::string in = "In " + called(panel) + ", ";
-        const std::string expected = "; the lines of a panel must not meet except at shared corners.";
+        const std::string expected = "; the lines of a panel must not meet except at shared corners";
         if (a == b) error(in + a + (c.touch ? " touches itself" : " crosses itself") + at + expected);
         else error(in + a + (c.touch ? " touches " : " crosses ") + b + at + expected);
     }
@@ -251,34 +256,34 @@ private:
     void check_holes(const Panel& panel) {
         for (std::size_t i = 0; i < panel.holes.size(); ++i)
             if (!contains(panel.outline, panel.holes[i].front().start))
-                error("In " + called(panel) + ", hole " + std::to_string(i) + " lies outside the outline.");
+                error("In " + called(panel) + ", hole " + std::to_string(i) + " lies outside the outline");
         for (std::size_t i = 0; i < panel.lines.size(); ++i)
             if (!contains(panel.outline, point_at(panel.lines[i].edges.front(), 0.5)))
-                error("In " + called(panel) + ", inner line " + std::to_string(i) + " lies outside the outline.");
+                error("In " + called(panel) + ", inner line " + std::to_string(i) + " lies outside the outline");
     }
 
     void check_scale() {
         if (largest_ > 0 && largest_ < options_.min_extent)
             error("The largest panel measures " + said(largest_) + "; at least " + said(options_.min_extent) +
-                  " was expected: check the units.");
+                  " was expected: check the units");
     }
 
     /// False when the span does not exist.
     bool check_span(const EdgeSpan& s, const std::string& who) {
         if (s.panel < 0 || s.panel >= int(pattern_.panels.size())) {
-            error(who + " names panel number " + std::to_string(s.panel) + ", which does not exist.");
+            error(who + " names panel number " + std::to_string(s.panel) + ", which does not exist");
             return false;
         }
         const Panel& panel = pattern_.panels[s.panel];
         if (s.edge < 0 || s.edge >= int(panel.outline.size())) {
             error(who + " names edge " + std::to_string(s.edge) + " of " + called(panel) + ", which has edges 0 to " +
-                  std::to_string(int(panel.outline.size()) - 1) + ".");
+                  std::to_string(int(panel.outline.size()) - 1));
             return false;
         }
         const auto fraction = [](double t) { return t >= 0 && t <= 1; };
         if (fraction(s.t0) && fraction(s.t1) && s.t0 != s.t1) return true;
         error(who + " takes edge " + std::to_string(s.edge) + " of " + called(panel) + " from " +
-              formatted("%g", s.t0) + " to " + formatted("%g", s.t1) + "; two different fractions from 0 to 1 were expected.");
+              formatted("%g", s.t0) + " to " + formatted("%g", s.t1) + "; two different fractions from 0 to 1 were expected");
         return false;
     }
 
@@ -289,14 +294,14 @@ private:
     }
 
     void check_seam(const Seam& seam) {
-        const std::string name = "The " + (seam.name.empty() ? std::string("seam") : seam.name);
-        if (seam.a.empty() || seam.b.empty()) return error(name + " has a side that names no edge.");
+        const std::string name = capital(seam.name.empty() ? "seam without a name" : seam.name);
+        if (seam.a.empty() || seam.b.empty()) return error(name + " has a side that names no edge");
         bool exists = true;
         for (const SeamSide* side : {&seam.a, &seam.b})
             for (const EdgeSpan& s : *side)
                 exists = check_span(s, name) && exists;
         if (!exists) return;
-        if (is_self(seam)) return error(name + " sews an edge to itself; two different edges were expected.");
+        if (is_self(seam)) return error(name + " sews an edge to itself; two different edges were expected");
         const int index = int(&seam - pattern_.seams.data());
         for (const SeamSide* side : {&seam.a, &seam.b})
             for (const EdgeSpan& s : *side)
@@ -316,16 +321,16 @@ private:
         const SeamLengths l = seam_lengths(pattern_, seam);
         if (!(l.ease > options_.note_ease)) return;
         const std::string text = name + " joins " + said(l.a) + " to " + said(l.b) + ", an ease of " + percent(l.ease);
-        if (l.ease > options_.max_ease) error(text + "; at most " + percent(options_.max_ease) + " was expected.");
-        else if (l.ease > options_.warn_ease) warn(text + ".");
-        else add(Severity::note, text + ".");
+        if (l.ease > options_.max_ease) error(text + "; at most " + percent(options_.max_ease) + " was expected");
+        else if (l.ease > options_.warn_ease) warn(text);
+        else add(Severity::note, text);
     }
 
     void check_twist(const Seam& seam, const std::string& name) {
         const SeamSpan s = seam_span_at_start(pattern_, seam);
         if (s.other < options_.twist * s.chosen && s.chosen - s.other > 0.01)
             warn(name + " may be twisted: its sides start out " + said(s.chosen) + " apart on average, and " +
-                 said(s.other) + " with one of them reversed.");
+                 said(s.other) + " with one of them reversed");
     }
 
     struct Use {
@@ -350,8 +355,8 @@ private:
     void report_overlap(const Use& a, const Use& b) {
         const std::string where = "edge " + std::to_string(a.edge) + " of " + called(pattern_.panels[a.panel]);
         const std::string one = pattern_.seams[a.seam].name, two = pattern_.seams[b.seam].name;
-        if (a.seam == b.seam) error("The " + one + " takes the same part of " + where + " twice.");
-        else error("The " + one + " and " + two + " overlap on " + where + "; a part of an edge can be sewn once.");
+        if (a.seam == b.seam) error(capital(one) + " takes the same part of " + where + " twice");
+        else error(capital(one) + " and " + two + " overlap on " + where + "; a part of an edge can be sewn once");
     }
 
     void check_unsewn() {
@@ -360,16 +365,16 @@ private:
         for (const Use& u : uses_)
             sewn[u.panel] = true;
         for (std::size_t i = 0; i < sewn.size(); ++i)
-            if (!sewn[i]) warn("The " + called(pattern_.panels[i]) + " is sewn to nothing.");
+            if (!sewn[i]) warn(capital(called(pattern_.panels[i])) + " is sewn to nothing");
     }
 
     void check_elastic(const Elastic& e) {
         if (!check_span(e.span, "An elastic")) return;
         const std::string on = "The elastic on edge " + std::to_string(e.span.edge) + " of " +
                                called(pattern_.panels[e.span.panel]);
-        if (!(e.ratio > 0 && e.ratio <= 1)) error(on + " has ratio " + formatted("%g", e.ratio) + "; above 0 and at most 1 was expected.");
+        if (!(e.ratio > 0 && e.ratio <= 1)) error(on + " has ratio " + formatted("%g", e.ratio) + "; above 0 and at most 1 was expected");
         if (!(e.stiffness > 0 && std::isfinite(e.stiffness)))
-            error(on + " has stiffness " + formatted("%g", e.stiffness) + " N; a number above 0 was expected.");
+            error(on + " has stiffness " + formatted("%g", e.stiffness) + " N; a number above 0 was expected");
     }
 
     const Pattern& pattern_;

@@ -182,8 +182,8 @@ TEST_CASE("panels are centred when the file asks for it") {
 }
 
 TEST_CASE("what is no JSON is refused with the place") {
-    CHECK(refusal("") == "sample.json is empty; JSON was expected.");
-    CHECK(refusal(" \n ") == "sample.json is empty; JSON was expected.");
+    CHECK(refusal("") == "sample.json is empty; JSON was expected");
+    CHECK(refusal(" \n ") == "sample.json is empty; JSON was expected");
     CHECK_THAT(refusal("{\n\"pattern\": }"), Contains("sample.json is not valid JSON at line 2, column 12"));
     CHECK_THAT(refusal(sample_text.substr(0, 700)), Contains("is not valid JSON at line"));
     CHECK_THAT(refusal("[50, 40]", "[NaN, 40]"), Contains("is not valid JSON at line 6"));
@@ -198,7 +198,7 @@ TEST_CASE("JSON nested 200,000 deep is refused in a sentence") {
         std::string deep;
         for (int i = 0; i < 200'000; ++i)
             deep += open;
-        CHECK(refusal(deep) == "sample.json is nested more than 64 deep, which no pattern needs.");
+        CHECK(refusal(deep) == "sample.json is nested more than 64 deep, which no pattern needs");
     }
 }
 
@@ -207,13 +207,13 @@ TEST_CASE("keys given twice are refused") {
 }
 
 TEST_CASE("missing keys are named with their place") {
-    CHECK(refusal("{}") == "sample.json lacks the key \"pattern\".");
-    CHECK(refusal("\"properties\"", "\"other\"") == "sample.json lacks the key \"properties\".");
+    CHECK(refusal("{}") == "sample.json lacks the key \"pattern\"");
+    CHECK(refusal("\"properties\"", "\"other\"") == "sample.json lacks the key \"properties\"");
     CHECK_THAT(refusal("\"units_in_meter\"", "\"units\""), Contains("lacks the key \"units_in_meter\""));
     CHECK_THAT(refusal("\"stitches\"", "\"seams\""), Contains("lacks the key \"stitches\""));
     for (const char* key : {"\"translation\"", "\"rotation\"", "\"vertices\"", "\"edges\""})
-        CHECK(refusal(key, "\"x\"") == "sample.json: panel \"front\" lacks the key " + std::string(key) + ".");
-    CHECK(refusal("\"endpoints\"", "\"ends\"") == "sample.json: panel \"front\", edge 0 lacks the key \"endpoints\".");
+        CHECK(refusal(key, "\"x\"") == "sample.json: panel \"front\" lacks the key " + std::string(key));
+    CHECK(refusal("\"endpoints\"", "\"ends\"") == "sample.json: panel \"front\", edge 0 lacks the key \"endpoints\"");
     CHECK_THAT(refusal("\"params\"", "\"values\""), Contains("panel \"front\", edge 1, \"curvature\" lacks the key \"params\""));
     CHECK_THAT(refusal("{\"panel\": \"front\", \"edge\": 1}", "{\"panel\": \"front\"}"),
                Contains("stitch 0, side 0 lacks the key \"edge\""));
@@ -221,27 +221,27 @@ TEST_CASE("missing keys are named with their place") {
 
 TEST_CASE("wrong types and values are named with place, expectation and finding") {
     CHECK(refusal("[50, 40]", "[\"wide\", 40]") ==
-          "sample.json: panel \"front\", vertex 2, coordinate 0 must be a number, but is \"wide\".");
-    CHECK_THAT(refusal("[50, 40]", "[50]"), Contains("vertex 2 must be an array of 2, but is an array of 1."));
-    CHECK_THAT(refusal("[50, 40]", "[1e308, 40]"), Contains("vertex 2, coordinate 0 must be a length, but is 1e+308."));
+          "sample.json: panel \"front\", \"vertices\", vertex 2, coordinate 0 must be a number, but is \"wide\"");
+    CHECK_THAT(refusal("[50, 40]", "[50]"), Contains("vertex 2 must be an array of 2, but is an array of 1"));
+    CHECK_THAT(refusal("[50, 40]", "[1e308, 40]"), Contains("vertex 2, coordinate 0 must be a length, but is 1e+308"));
     CHECK_THAT(refusal("[10, 20, 30]", "[10, 20]"), Contains("\"translation\" must be an array of 3"));
     CHECK_THAT(refusal("[0, 0, 0]", "[0, 0, true]"), Contains("\"rotation\", angle 2 must be a number"));
-    CHECK_THAT(refusal("[0, 1]", "[0, 4]"), Contains("edge 0, \"endpoints\", number 1 must be the number of a vertex, 0 to 3, but is 4."));
+    CHECK_THAT(refusal("[0, 1]", "[0, 4]"), Contains("edge 0, \"endpoints\", number 1 must be the number of a vertex, 0 to 3, but is 4"));
     CHECK_THAT(refusal("[0, 1]", "[-1, 1]"), Contains("the number of a vertex"));
     CHECK_THAT(refusal("[0, 1]", "[0.5, 1]"), Contains("the number of a vertex"));
     CHECK_THAT(refusal("[0, 1]", "[0, 99999999999999999999]"), Contains("the number of a vertex"));
-    CHECK_THAT(refusal("\"quadratic\"", "\"spline\""), Contains("\"type\" must be \"quadratic\", \"cubic\" or \"circle\", but is \"spline\"."));
+    CHECK_THAT(refusal("\"quadratic\"", "\"spline\""), Contains("\"type\" must be \"quadratic\", \"cubic\" or \"circle\", but is \"spline\""));
     CHECK_THAT(refusal("[[0.5, 0.1]]", "[[0.5, 0.1], [0.5, 0.1]]"), Contains("\"params\" must be an array of 1"));
     CHECK_THAT(refusal("[25, 0, 1]", "[-25, 0, 1]"), Contains("must be a radius above 0"));
     CHECK_THAT(refusal("[25, 0, 1]", "[25, 2, 1]"), Contains("must be true or false"));
     CHECK_THAT(refusal("\"units_in_meter\": 100", "\"units_in_meter\": 0"), Contains("\"units_in_meter\" must be a number from"));
     CHECK_THAT(refusal("\"relative\"", "\"polar\""), Contains("must be \"relative\" or \"absolute\""));
-    CHECK_THAT(refusal("\"label\": \"body\"", "\"label\": 7"), Contains("\"label\" must be a string, but is 7."));
+    CHECK_THAT(refusal("\"label\": \"body\"", "\"label\": 7"), Contains("\"label\" must be a string, but is 7"));
     CHECK_THAT(refusal("\"right_wrong\"", "\"wrong_right\""), Contains("stitch 1, third member must be \"right_wrong\""));
     CHECK_THAT(refusal("\"panel\": \"back\", \"edge\": 0", "\"panel\": \"bakc\", \"edge\": 0"),
-               Contains("stitch 0, side 1, \"panel\" must be the name of a panel, but is \"bakc\"."));
+               Contains("stitch 0, side 1, \"panel\" must be the name of a panel, but is \"bakc\""));
     CHECK_THAT(refusal("\"panel\": \"back\", \"edge\": 0", "\"panel\": \"back\", \"edge\": 4"),
-               Contains("must be the number of an edge of panel \"back\", 0 to 3, but is 4."));
+               Contains("must be the number of an edge of panel \"back\", 0 to 3, but is 4"));
     CHECK_THAT(refusal(R"({"pattern": {"panels": {}, "stitches": []}, "properties": {"units_in_meter": 100}})"), Contains("has no panels"));
 }
 
@@ -251,8 +251,8 @@ TEST_CASE("too many edges are refused by a stated limit") {
     for (int i = 0; i <= 100'000; ++i)
         text << (i ? "," : "") << R"({"endpoints":[0,1]})";
     text << R"(]}}, "stitches": []}, "properties": {"units_in_meter": 100}})";
-    CHECK(refusal(text.str()) == "sample.json: panel \"p\": the pattern has more than 100000 edges, the most that is read.");
-    CHECK(refusal(std::string((64u << 20) + 1, '[')) == "sample.json is larger than 64 MB, the most that is read.");
+    CHECK(refusal(text.str()) == "sample.json: panel \"p\": the pattern has more than 100000 edges, the most that is read");
+    CHECK(refusal(std::string((64u << 20) + 1, '[')) == "sample.json is larger than 64 MB, the most that is read");
     std::string many = "[0";
     for (int i = 0; i < 5'000'000; ++i)
         many += ",0";
@@ -260,8 +260,8 @@ TEST_CASE("too many edges are refused by a stated limit") {
 }
 
 TEST_CASE("a file that is not there, or no file, is refused") {
-    CHECK_THROWS_WITH(read_pattern("/nowhere/tee.json"), "/nowhere/tee.json does not exist.");
-    CHECK_THROWS_WITH(read_pattern("/"), "/ is a folder; a file was expected.");
+    CHECK_THROWS_WITH(read_pattern("/nowhere/tee.json"), Contains("/nowhere/tee.json"));
+    CHECK_THROWS_WITH(read_pattern("/"), Contains("is a folder"));
 }
 
 TEST_CASE("real patterns read and are sound, but for the one that crosses itself") {

@@ -135,7 +135,7 @@ TEST_CASE("a panel of two vertices encloses no area unless its edges are curved"
     Pattern p = tube();
     p.seams.clear();
     p.panels[0].outline = polygon({{0, 0}, {0.5, 0}});
-    CHECK(says(issues(p), {"panel \"front\"", "no area"}));
+    CHECK(says(issues(p), {"Panel \"front\"", "no area"}));
     for (Edge& e : p.panels[0].outline)
         e.curve = Arc{0.25, false, true};
     CHECK(issues(p).empty());
@@ -155,14 +155,14 @@ TEST_CASE("coordinates that are no numbers are refused") {
         CHECK(says(issues(p), {"panel \"back\"", "not finite"}));
         p = tube();
         p.seams[0].a[0].t1 = x;
-        CHECK(says(issues(p), {"seam 0", "fractions from 0 to 1"}));
+        CHECK(says(issues(p), {"Seam 0", "fractions from 0 to 1"}));
     }
 }
 
 TEST_CASE("senseless units are told by size and place") {
     Pattern p = tube();
     p.panels[0] = square("front", 293);
-    CHECK(says(issues(p), {"panel \"front\"", "293 m", "units"}));
+    CHECK(says(issues(p), {"Panel \"front\"", "293 m", "units"}));
     p.panels = {square("front", 0.005), square("back", 0.005)};
     CHECK(says(issues(p), {"5", "units"}));
     p = tube();
@@ -173,21 +173,21 @@ TEST_CASE("senseless units are told by size and place") {
 TEST_CASE("seams that name nothing are refused") {
     Pattern p = tube();
     p.seams[0].a[0].panel = 7;
-    CHECK(says(issues(p), {"seam 0", "panel number 7", "does not exist"}));
+    CHECK(says(issues(p), {"Seam 0", "panel number 7", "does not exist"}));
     p = tube();
     p.seams[1].b[0].edge = 4;
-    CHECK(says(issues(p), {"seam 1", "edge 4", "panel \"back\"", "0 to 3"}));
+    CHECK(says(issues(p), {"Seam 1", "edge 4", "panel \"back\"", "0 to 3"}));
     p = tube();
     p.seams[1].b.clear();
-    CHECK(says(issues(p), {"seam 1", "names no edge"}));
+    CHECK(says(issues(p), {"Seam 1", "names no edge"}));
 }
 
 TEST_CASE("a seam to itself is refused, a dart is not") {
     Pattern p = tube();
     p.seams[0].b = p.seams[0].a;
-    CHECK(says(issues(p), {"seam 0", "to itself"}));
+    CHECK(says(issues(p), {"Seam 0", "to itself"}));
     std::swap(p.seams[0].b[0].t0, p.seams[0].b[0].t1);
-    CHECK(says(issues(p), {"seam 0", "to itself"}));
+    CHECK(says(issues(p), {"Seam 0", "to itself"}));
     // One edge folded in the middle, its halves sewn together.
     p.seams[0].a = {{0, 1, 0.5, 0}};
     p.seams[0].b = {{0, 1, 0.5, 1}};
@@ -197,7 +197,7 @@ TEST_CASE("a seam to itself is refused, a dart is not") {
 TEST_CASE("overlapping spans are refused, neighbouring ones are not") {
     Pattern p = tube();
     p.seams.push_back({{{0, 1, 0.9, 1}}, {{1, 0, 0, 0.1}}, SeamFaces::right_to_right, "seam 2 (x)"});
-    CHECK(says(issues(p), {"seam 0", "seam 2", "overlap", "edge 1 of panel \"front\""}));
+    CHECK(says(issues(p), {"Seam 0", "seam 2", "overlap", "edge 1 of panel \"front\""}));
     p.seams[0].a[0].t1 = 0.9;
     p.seams[0].b[0].t1 = 0.9;
     CHECK(issues(p).empty());
@@ -206,7 +206,7 @@ TEST_CASE("overlapping spans are refused, neighbouring ones are not") {
     p.seams[0].name = "long";
     p.seams.push_back({{{0, 1, 0.1, 0.2}}, {{1, 0, 0, 0.1}}, SeamFaces::right_to_right, "early"});
     p.seams.push_back({{{0, 1, 0.7, 0.8}}, {{1, 0, 0.2, 0.3}}, SeamFaces::right_to_right, "late"});
-    CHECK(says(issues(p), {"long and early overlap", "long and late overlap"}));
+    CHECK(says(issues(p), {"Long and early overlap", "Long and late overlap"}));
 }
 
 TEST_CASE("unequal lengths are a note, a warning or an error by their ease") {
@@ -215,11 +215,11 @@ TEST_CASE("unequal lengths are a note, a warning or an error by their ease") {
     set(0.95);
     CHECK(check(p).empty());
     set(0.8);
-    CHECK(says(issues(p, Severity::note), {"seam 0", "40 cm", "50 cm", "25 %"}));
+    CHECK(says(issues(p, Severity::note), {"Seam 0", "40 cm", "50 cm", "25 %"}));
     set(0.5);
-    CHECK(says(issues(p, Severity::warning), {"seam 0", "100 %"}));
+    CHECK(says(issues(p, Severity::warning), {"Seam 0", "100 %"}));
     set(0.3);
-    CHECK(says(issues(p), {"seam 0", "15 cm", "50 cm", "233 %", "150 %"}));
+    CHECK(says(issues(p), {"Seam 0", "15 cm", "50 cm", "233 %", "150 %"}));
 }
 
 TEST_CASE("seam lengths add up over the spans of a side") {
@@ -234,14 +234,14 @@ TEST_CASE("seam lengths add up over the spans of a side") {
 TEST_CASE("a seam whose other direction is much shorter is warned of and not refused") {
     Pattern p = tube();
     std::swap(p.seams[0].b[0].t0, p.seams[0].b[0].t1);
-    CHECK(says(issues(p, Severity::warning), {"seam 0", "twisted"}));
+    CHECK(says(issues(p, Severity::warning), {"Seam 0", "twisted"}));
     CHECK(issues(p).empty());
 }
 
 TEST_CASE("a panel sewn to nothing is warned of") {
     Pattern p = tube();
     p.panels.push_back(square("pocket"));
-    CHECK(says(issues(p, Severity::warning), {"panel \"pocket\"", "sewn to nothing"}));
+    CHECK(says(issues(p, Severity::warning), {"Panel \"pocket\"", "sewn to nothing"}));
 }
 
 TEST_CASE("the number of edges is limited") {

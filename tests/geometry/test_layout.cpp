@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rules of CONTRIBUTING.md that a machine can check: which file may include which, and the licence line.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <optional>
+#include <regex>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using Strings = std::vector<std::string>;
+
+/// What may be included stands to the left.
+const Strings modules = {"geometry", "patterns", "sewing", "draping", "io", "src"};
+const Strings draping_rooms = {"algebra", "fabric", "energy", "contact", "solve", "rest"};
+
+/// Libraries that cost minutes of compiling or belong behind one door, by the start of their headers, and the
+/// files that may include them.
+const std::map<std::string, Strings> doors = {
+    {"CGAL/", {"geometry/intersections.cpp", "patterns/triangulate_cgal.cpp"}},
+    {"cholmod.h", {"sewing/sparse_solve.cpp", "draping/algebra/cholesky.cpp"}},
+    {"suitesparse/", {}},
+    {"nlopt", {}},
+    {"assimp/", {"io/read_avatar.cpp"}},
+    {"embree3/", {"io/preview.cpp"}},
+    {"tbb/", {"geometry/parallel.cpp"}},
+    {"oneapi/tbb", {}},
+};
+
+Strings split(const std::string& path) {
+    Strings parts;
+    std::istringstream in(path);
+    for (std::string part; std::getline(in, part, '/');) parts.push_back(part);
+    return parts;
+}
+
+std::optional<int> place_in(const Strings& order, const std::string& name) {
+    const auto at = std::find(order.begin(), order.end(), name);
+    if (at == order.end()) return std::nullopt;
+    return int(at - order.begin());
+}
+
+/// Files directly in draping/ stand to the right of its rooms.
+std::optional<int> room(const Strings& path) {
+    return path.size() == 2 ? int(draping_rooms.size()) : place_in(draping_rooms, path[1]);
+}
+
+/// What is wrong with `file` including `header` in quotes; empty when nothing is.
+std::string wrong_own_include(const std::string& file, const std::string& header) {
+    const Strings from = split(file), to = split(header);
+    const auto from_module = place_in(modules, from[0]), to_module = place_in(modules, to[0]);
+    if (!from_module) return ""; // tests and benches may include everything
+    if (to.size() < 2 || !to_module) return "expected a path from the root of the project, beginning with a module";
+    if (*to_module > *from_module) return "the module " + to[0] + " stands to the right of " + from[0];
+    if (from[0] != "draping" || to[0] != "draping") return "";
+    const auto from_room = room(from), to_room = room(to);
+    if (!from_room || !to_room) return "a folder of draping/ is missing in the order of this test";
+    if (*to_room > *from_room) return header + " stands to the right of draping/" + from[1];
+    return "";
+}
+
+std::string wrong_library_include(const std::string& file, const std::string& header) {
+    if (!place_in(modules, split(file)[0])) return "";
+    for (const auto& [start, files] : doors)
+        if (header.rfind(start, 0) == 0 && std::find(files.begin(), files.end(), file) == files.end())
+            return "this library belongs behind a header of the project's own; see CONTRIBUTING.md";
+    return "";
+}
+
+Strings wrong_includes(const std::string& file, const std::string& text) {
+    static const std::regex include(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
+    Strings wrong;
+    std::istringstream in(text);
+    int number = 1;
+    for (std::string line; std::getline(in, line); ++number) {
+        std::smatch found;
+        if (!std::regex_search(line, found, include)) continue;
+        const std::string what = found[1] == "\"" ? wrong_own_include(file, found[2]) : wrong_library_include(file, found[2]);
+        if (!what.empty()) wrong.push_back(file + ":" + std::to_string(number) + " includes " + found[2].str() + ": " + what);
+    }
+    return wrong;
+}
+
+/// In the first line, or the second when the first one names an interpreter.
+bool has_licence(const std::string& text) {
+    std::istringstream in(text);
+    std::string line;
+    std::getline(in, line);
+    if (line.rfind("#!", 0) == 0) std::getline(in, line);
+    return line == "// SPDX-License-Identifier: GPL-3.0-or-later" || line == "# SPDX-License-Identifier: GPL-3.0-or-later";
+}
+
+std::string read(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+bool is_source(const fs::path& path) {
+    static const Strings endings = {".h", ".cpp", ".c", ".cmake", ".py", ".sh"};
+    const std::string folder = path.begin()->string();
+    return std::find(endings.begin(), endings.end(), path.extension().string()) != endings.end() ||
+           path.filename() == "CMakeLists.txt" || (folder == "scripts" && path.extension().empty());
+}
+
+/// Sources of the project, as paths from its root.
+Strings sources() {
+    static const Strings folders = {"geometry", "patterns", "sewing", "draping", "io", "src",
+                                    "tests", "bench", "cmake", "scripts", "docs", "examples"};
+    const fs::path root = TOILE_SOURCE_DIR;
+    Strings found = {"CMakeLists.txt"};
+    for (const std::string& folder : folders) {
+        if (!fs::exists(root / folder)) continue;
+        for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+            const fs::path path = entry.path().lexically_relative(root);
+            if (entry.is_regular_file() && is_source(path)) found.push_back(path.generic_string());
+        }
+    }
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+} // namespace
+
+TEST_CASE("the check of includes sees what it is meant to see") {
+    const auto wrong = [](const std::string& file, const std::string& line) { return !wrong_includes(file, line).empty(); };
+    CHECK_FALSE(wrong("sewing/garment.h", "#include \"patterns/pattern.h\""));
+    CHECK_FALSE(wrong("sewing/garment.cpp", "#include \"sewing/garment.h\""));
+    CHECK(wrong("geometry/bvh.cpp", "#include \"sewing/garment.h\""));
+    CHECK(wrong("draping/drape.cpp", "  #  include \"io/report.h\""));
+    CHECK(wrong("draping/measure.cpp", "#include \"measure.h\""));
+    CHECK_FALSE(wrong("draping/solve/settle.cpp", "#include \"draping/energy/patch.h\""));
+    CHECK_FALSE(wrong("draping/drape.cpp", "#include \"draping/solve/settle.h\""));
+    CHECK(wrong("draping/energy/patch.cpp", "#include \"draping/solve/settle.h\""));
+    CHECK(wrong("draping/contact/barrier.cpp", "#include \"draping/measure.h\""));
+    CHECK(wrong("draping/new/thing.cpp", "#include \"draping/measure.h\""));
+    CHECK(wrong("draping/drape.cpp", "#include <CGAL/box_intersection_d.h>"));
+    CHECK(wrong("geometry/bvh.cpp", "#include <tbb/parallel_for.h>"));
+    CHECK_FALSE(wrong("geometry/intersections.cpp", "#include <CGAL/box_intersection_d.h>"));
+    CHECK_FALSE(wrong("geometry/bvh.cpp", "#include <vector>"));
+    CHECK_FALSE(wrong("tests/io/test_x.cpp", "#include \"tests/support/random.h\""));
+    CHECK(wrong_includes("geometry/a.h", "\n#include \"io/report.h\"\n")[0].find("geometry/a.h:2 ") == 0);
+
+    CHECK(has_licence("// SPDX-License-Identifier: GPL-3.0-or-later\n#pragma once\n"));
+    CHECK(has_licence("#!/bin/sh\n# SPDX-License-Identifier: GPL-3.0-or-later\n"));
+    CHECK_FALSE(has_licence("#pragma once\n// SPDX-License-Identifier: GPL-3.0-or-later\n"));
+}
+
+TEST_CASE("modules include leftward only and heavy libraries stay behind their doors") {
+    const Strings files = sources();
+    REQUIRE(files.size() > 50);
+    for (const std::string& file : files) {
+        if (fs::path(file).extension() != ".h" && fs::path(file).extension() != ".cpp") continue;
+        for (const std::string& wrong : wrong_includes(file, read(fs::path(TOILE_SOURCE_DIR) / file))) FAIL_CHECK(wrong);
+    }
+}
+
+TEST_CASE("every source file carries its licence line") {
+    for (const std::string& file : sources()) {
+        INFO(file << " should begin with the line \"SPDX-License-Identifier: GPL-3.0-or-later\" as a comment");
+        CHECK(has_licence(read(fs::path(TOILE_SOURCE_DIR) / file)));
+    }
+}

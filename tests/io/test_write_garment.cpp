@@ -5,6 +5,7 @@
 #include "io/uv_layout.h"
 #include "io/write_file.h"
 #include "io/write_garment.h"
+#include "tests/support/khronos.h"
 #include "tests/support/skirt.h"
 #include "tests/support/temp_folder.h"
 
@@ -13,6 +14,7 @@
 #include <filesystem>
 
 using namespace toile;
+using test::khronos_accepts;
 using test::make_skirt;
 using test::TempFolder;
 
@@ -82,6 +84,25 @@ TEST_CASE("a GLB garment reads back as the nearest floats in the same order") {
     CHECK(largest_difference(r.x, rounded_to_float(s.x)) == 0);
     CHECK(largest_difference(r.x, s.x) > 0);
     CHECK(largest_uv_difference(s.garment, r.garment) < 2e-7);
+}
+
+TEST_CASE("a GLB passes the Khronos validator, and a broken one does not") {
+    const TempFolder folder;
+    const auto s = rough_skirt();
+    const TriMesh body = tetrahedron();
+    WriteOptions options;
+    options.avatar = &body;
+    write_garment(folder / "good.glb", s.garment, s.x, options);
+    const auto accepted = khronos_accepts(folder / "good.glb");
+    if (!accepted) {
+        WARN("skipped: the Khronos glTF validator is not installed in build/npm");
+        return;
+    }
+    CHECK(*accepted);
+    std::string bytes = read_file(folder / "good.glb", 1 << 24);
+    bytes.replace(bytes.find("\"max\":[0"), 8, "\"max\":[9");
+    write_file(folder / "bad.glb", bytes);
+    CHECK_FALSE(*khronos_accepts(folder / "bad.glb"));
 }
 
 TEST_CASE("unit and up axis of an OBJ are undone by the reader") {

@@ -39,11 +39,13 @@ void keep_nearer_segment(Nearest& best, int i, int j, const OnSegment& s) {
 // Below this squared sine of the angle of two directions, a solution that divides by it is not trusted alone.
 constexpr double nearly_parallel = 1e-12;
 
-// Foot of the perpendicular from the origin on the plane of a triangle.
+// Foot of the perpendicular from the origin on the plane of a triangle, as weights of the corners: the sign of each
+// tells on which side of the opposite side it falls.
 struct Foot {
-    bool inside = false;
-    bool sliver = true; ///< the plane is uncertain
-    double a = 0, b = 0, c = 0;
+    double a, b, c;
+    bool sliver; ///< the plane is uncertain, and so are the signs
+
+    bool inside() const { return a > 0 && b > 0 && c > 0; }
 };
 
 Foot foot_on_plane(const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -52,15 +54,9 @@ Foot foot_on_plane(const Vec3& a, const Vec3& b, const Vec3& c) {
     const double area = n.squaredNorm();
     // Each from a corner of its own sub-triangle: far points keep the digits of near corners.
     const double wa = n.dot(b.cross(bc)), wb = n.dot(ac.cross(c)), wc = n.dot(a.cross(ab));
-    Foot foot;
-    foot.inside = wa > 0 && wb > 0 && wc > 0;
-    if (!foot.inside) return foot;
-    foot.sliver = area < nearly_parallel * ab.squaredNorm() * ac.squaredNorm();
-    const double sum = wa + wb + wc;
-    foot.a = wa / sum;
-    foot.b = wb / sum;
-    foot.c = wc / sum;
-    return foot;
+    const double scale = 1 / (wa + wb + wc);
+    return {wa * scale, wb * scale, wc * scale,
+            !(area > nearly_parallel * ab.squaredNorm() * ac.squaredNorm())};
 }
 
 void keep_nearer_end(Nearest& best, int end, int i, int j, const OnSegment& s) {
@@ -81,39 +77,42 @@ Nearest nearest_point_triangle(const Vec3& p, const Vec3& a_, const Vec3& b_, co
     const Vec3 a = a_ - p, b = b_ - p, c = c_ - p;
     const Foot foot = foot_on_plane(a, b, c);
     Nearest face;
-    if (foot.inside) {
+    const bool inside = foot.inside();
+    if (inside) {
         face = {(foot.a * a + foot.b * b + foot.c * c).squaredNorm(), {1, foot.a, foot.b, foot.c}, 0b1111};
         if (!foot.sliver) return face;
     }
-    // The nearest point lies on the border.
+    // The nearest point lies on the border, on a side that the foot is beyond.
     Nearest best;
     best.squared = std::numeric_limits<double>::infinity();
     best.weight[0] = 1;
     best.active = 1;
-    keep_nearer_segment(best, 1, 2, origin_on_segment(a, b));
-    keep_nearer_segment(best, 2, 3, origin_on_segment(b, c));
-    keep_nearer_segment(best, 3, 1, origin_on_segment(c, a));
-    return foot.inside && face.squared < best.squared ? face : best;
+    if (foot.sliver || !(foot.c > 0)) keep_nearer_segment(best, 1, 2, origin_on_segment(a, b));
+    if (foot.sliver || !(foot.a > 0)) keep_nearer_segment(best, 2, 3, origin_on_segment(b, c));
+    if (foot.sliver || !(foot.b > 0)) keep_nearer_segment(best, 3, 1, origin_on_segment(c, a));
+    return inside && face.squared < best.squared ? face : best;
 }
 
 Nearest nearest_edge_edge(const Vec3& a0, const Vec3& a1, const Vec3& b0, const Vec3& b1) {
     const Vec3 u = a1 - a0, v = b1 - b0, w = b0 - a0;
     const Vec3 n = u.cross(v);
     const double det = n.squaredNorm();
+    const bool parallel = !(det > nearly_parallel * u.squaredNorm() * v.squaredNorm());
     const double s_up = n.dot(w.cross(v)), t_up = n.dot(w.cross(u));
     const bool inside = s_up > 0 && s_up < det && t_up > 0 && t_up < det;
     Nearest crossing;
     if (inside) {
         const double s = s_up / det, t = t_up / det;
         crossing = {(w + t * v - s * u).squaredNorm(), {1 - s, s, 1 - t, t}, 0b1111};
-        if (det > nearly_parallel * u.squaredNorm() * v.squaredNorm()) return crossing;
+        if (!parallel) return crossing;
     }
+    // The nearest points include an end, one that the nearest points of the lines are beyond.
     Nearest best;
     best.squared = std::numeric_limits<double>::infinity();
-    keep_nearer_end(best, 0, 2, 3, origin_on_segment(w, b1 - a0));
-    keep_nearer_end(best, 1, 2, 3, origin_on_segment(b0 - a1, b1 - a1));
-    keep_nearer_end(best, 2, 0, 1, origin_on_segment(-w, a1 - b0));
-    keep_nearer_end(best, 3, 0, 1, origin_on_segment(a0 - b1, a1 - b1));
+    if (parallel || s_up <= 0) keep_nearer_end(best, 0, 2, 3, origin_on_segment(w, b1 - a0));
+    if (parallel || s_up >= det) keep_nearer_end(best, 1, 2, 3, origin_on_segment(b0 - a1, b1 - a1));
+    if (parallel || t_up <= 0) keep_nearer_end(best, 2, 0, 1, origin_on_segment(-w, a1 - b0));
+    if (parallel || t_up >= det) keep_nearer_end(best, 3, 0, 1, origin_on_segment(a0 - b1, a1 - b1));
     return inside && crossing.squared < best.squared ? crossing : best;
 }
 

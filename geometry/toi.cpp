@@ -29,12 +29,14 @@ struct EdgeEdge {
 // Coordinates are stored rounded; a gap may lose this much when x + t dx is written down. Not finite when the
 // motion is not.
 double rounding_of(const Motion& m) {
-    double largest = 0;
+    double largest = 0, finite = 0; // v - v is 0, or no number
     for (int k = 0; k < 4; ++k)
         for (int c = 0; c < 3; ++c)
-            for (const double v : {std::abs(m.x[k][c]), std::abs(m.dx[k][c])})
-                if (v > largest || std::isnan(v)) largest = v;
-    return 8 * std::numeric_limits<double>::epsilon() * largest;
+            for (const double v : {m.x[k][c], m.dx[k][c]}) {
+                largest = std::max(largest, std::abs(v));
+                finite += v - v;
+            }
+    return 8 * std::numeric_limits<double>::epsilon() * largest + finite;
 }
 
 // Time from now at which the projections of the two simplices on `n` come within `target`: until then they are

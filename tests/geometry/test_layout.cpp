@@ -7,7 +7,6 @@
 #include <fstream>
 #include <map>
 #include <optional>
-#include <regex>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -74,16 +73,36 @@ std::string wrong_library_include(const std::string& file, const std::string& he
     return "";
 }
 
+/// The header that a line includes, and its first delimiter; empty for other lines.
+struct Include {
+    char delimiter = 0;
+    std::string header;
+};
+
+Include include_in(std::string line) {
+    const auto skip = [&](const std::string& word) {
+        line.erase(0, line.find_first_not_of(" \t"));
+        if (line.rfind(word, 0) != 0) return false;
+        line.erase(0, word.size());
+        return true;
+    };
+    if (!skip("#") || !skip("include") || !skip("") || line.empty()) return {};
+    const auto end = line.find_first_of("\">", 1);
+    if ((line[0] != '"' && line[0] != '<') || end == std::string::npos) return {};
+    return {line[0], line.substr(1, end - 1)};
+}
+
 Strings wrong_includes(const std::string& file, const std::string& text) {
-    static const std::regex include(R"(^\s*#\s*include\s*([<"])([^>"]+)[>"])");
     Strings wrong;
     std::istringstream in(text);
     int number = 1;
     for (std::string line; std::getline(in, line); ++number) {
-        std::smatch found;
-        if (!std::regex_search(line, found, include)) continue;
-        const std::string what = found[1] == "\"" ? wrong_own_include(file, found[2]) : wrong_library_include(file, found[2]);
-        if (!what.empty()) wrong.push_back(file + ":" + std::to_string(number) + " includes " + found[2].str() + ": " + what);
+        const Include found = include_in(line);
+        if (found.header.empty()) continue;
+        const std::string what = found.delimiter == '"' ? wrong_own_include(file, found.header)
+                                                        : wrong_library_include(file, found.header);
+        if (!what.empty())
+            wrong.push_back(file + ":" + std::to_string(number) + " includes " + found.header + ": " + what);
     }
     return wrong;
 }

@@ -14,8 +14,8 @@ namespace toile {
 
 namespace {
 
-// Corners and centroids with the weights of the rule that integrates squares of linear functions over a triangle
-// exactly: a twelfth of its area at each corner, three quarters at the centroid.
+// Corners and centroids with the weights of the rule that integrates squares of linear functions over a
+// triangle exactly: a twelfth of its area at each corner, three quarters at the centroid.
 struct Samples {
     Points points;
     std::vector<double> weights;
@@ -27,7 +27,8 @@ Samples samples_of(const TriMesh& mesh, const std::vector<double>& areas) {
     s.weights.assign(mesh.points.size(), 0);
     for (std::size_t k = 0; k < mesh.triangles.size(); ++k) {
         const auto& [a, b, c] = mesh.triangles[k];
-        for (int i : mesh.triangles[k]) s.weights[i] += areas[k] / 12;
+        for (int i : mesh.triangles[k])
+            s.weights[i] += areas[k] / 12;
         s.points.push_back((mesh.points[a] + mesh.points[b] + mesh.points[c]) / 3);
         s.weights.push_back(0.75 * areas[k]);
     }
@@ -55,7 +56,8 @@ Points nearest_on(const TriMesh& mesh, const Bvh& tree, const Samples& samples) 
             double limit = std::numeric_limits<double>::infinity();
             const int t = tree.nearest(p, limit, [&](int k) { return to_triangle(k).squared; });
             const auto& [a, b, c] = mesh.triangles[t];
-            nearest[i] = p + gap_point_triangle(to_triangle(t), {p, mesh.points[a], mesh.points[b], mesh.points[c]});
+            nearest[i] =
+                p + gap_point_triangle(to_triangle(t), {p, mesh.points[a], mesh.points[b], mesh.points[c]});
         }
     });
     return nearest;
@@ -85,10 +87,12 @@ Comparison distances(const Samples& from, const Points& to) {
 
 void require_surface(const TriMesh& mesh, const char* which) {
     if (mesh.triangles.empty())
-        throw std::invalid_argument(std::string("the ") + which + " mesh has no triangles, expected a surface");
+        throw std::invalid_argument(std::string("the ") + which +
+                                    " mesh has no triangles, expected a surface");
     for (const Vec3& p : mesh.points)
         if (!p.allFinite())
-            throw std::invalid_argument(std::string("the ") + which + " mesh has coordinates that are not finite");
+            throw std::invalid_argument(std::string("the ") + which +
+                                        " mesh has coordinates that are not finite");
 }
 
 } // namespace
@@ -103,7 +107,8 @@ Comparison compare(const TriMesh& a, const TriMesh& b) {
         return result;
     }
     const Samples from_b = samples_of(b, areas_of(b));
-    const Bvh tree_a(triangle_boxes(a.points, a.triangles, 0)), tree_b(triangle_boxes(b.points, b.triangles, 0));
+    const Bvh tree_a(triangle_boxes(a.points, a.triangles, 0)),
+        tree_b(triangle_boxes(b.points, b.triangles, 0));
     const Points on_a = nearest_on(a, tree_a, from_b);
     const Comparison ab = distances(from_a, nearest_on(b, tree_b, from_a)), ba = distances(from_b, on_a);
     Comparison result;

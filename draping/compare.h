@@ -15,9 +15,9 @@ struct Comparison {
 };
 
 /// Distance between two surfaces in metres, as they lie: neither is moved. Meshes of the same triangles are
-/// compared by points of the same index, so that sliding within the surface counts; others by the nearest points
-/// of the surfaces, from corners and centroids of the triangles of each to the other.
-/// Throws std::invalid_argument when a mesh has no triangles or coordinates that are not finite.
+/// compared by points of the same index, so that sliding within the surface counts; others by the nearest
+/// points of the surfaces, from corners and centroids of the triangles of each to the other. Throws
+/// std::invalid_argument when a mesh has no triangles or coordinates that are not finite.
 Comparison compare(const TriMesh& a, const TriMesh& b);
 
 } // namespace toile

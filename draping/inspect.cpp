@@ -12,7 +12,8 @@ namespace {
 TriMesh mesh_in_space(const Garment& garment, const Points& x) {
     TriMesh mesh;
     mesh.points = x;
-    for (int t = 0; t < int(garment.triangles.size()); ++t) mesh.triangles.push_back(garment.nodes(t));
+    for (int t = 0; t < int(garment.triangles.size()); ++t)
+        mesh.triangles.push_back(garment.nodes(t));
     return mesh;
 }
 
@@ -50,13 +51,15 @@ void measure_surface(const TriMesh& mesh, Inspection& found) {
         found.area += area;
         found.flat_triangles += area == 0;
     }
-    for (const auto& [a, b] : edges.ends) found.mean_edge += (mesh.points[a] - mesh.points[b]).norm();
+    for (const auto& [a, b] : edges.ends)
+        found.mean_edge += (mesh.points[a] - mesh.points[b]).norm();
     if (edges.size() > 0) found.mean_edge /= edges.size();
 }
 
 } // namespace
 
-Inspection inspect(const Garment& garment, const Points& x, const TriMesh& body, const PanelFabrics& fabrics) {
+Inspection inspect(const Garment& garment, const Points& x, const TriMesh& body,
+                   const PanelFabrics& fabrics) {
     Inspection found;
     found.panels = int(garment.panel_names.size());
     found.vertices = int(garment.uv.size());

@@ -63,7 +63,9 @@ TriangleStrain strain_of(const Mat2& rest, const Vec3& a, const Vec3& b, const V
     return {std::sqrt(yy) - 1, std::sqrt(xx) - 1, larger - 1, (larger > 0 ? area / larger : 0) - 1, shear};
 }
 
-double tighter(double limit, double other) { return limit > 0 && (other <= 0 || limit < other) ? limit : other; }
+double tighter(double limit, double other) {
+    return limit > 0 && (other <= 0 || limit < other) ? limit : other;
+}
 
 // ---- developability
 
@@ -76,10 +78,12 @@ double angle_at(const Vec3& p, const Vec3& a, const Vec3& b) {
 std::vector<bool> inner_nodes_off_seams(const Garment& garment) {
     std::vector<bool> inner(garment.node_count, false);
     for (int e = 0; e < garment.edges.size(); ++e)
-        for (int n : garment.edges.ends[e]) inner[n] = true;
+        for (int n : garment.edges.ends[e])
+            inner[n] = true;
     for (int e = 0; e < garment.edges.size(); ++e)
         if (garment.edges.triangles_at(e) != 2 || garment.seam_edge[e])
-            for (int n : garment.edges.ends[e]) inner[n] = false;
+            for (int n : garment.edges.ends[e])
+                inner[n] = false;
     return inner;
 }
 
@@ -116,8 +120,8 @@ double turn(const Vec2& from, const Vec2& to) {
 }
 
 // Parts of the section that go round `axis`. Walking along the lines turns about the axis; a part goes round
-// when two ways to one point differ by a full turn. This needs neither order nor orientation nor loops without
-// branches, and an open front does not close by itself.
+// when two ways to one point differ by a full turn. This needs neither order nor orientation nor loops
+// without branches, and an open front does not close by itself.
 std::vector<std::vector<Vec2>> parts_around(const Section& section, const Vec2& axis) {
     const int n = int(section.points.size());
     std::vector<std::vector<int>> next(n);
@@ -146,7 +150,8 @@ std::vector<std::vector<Vec2>> parts_around(const Section& section, const Vec2& 
             }
         if (!around) continue;
         parts.emplace_back();
-        for (int i : queue) parts.back().push_back(section.points[i]);
+        for (int i : queue)
+            parts.back().push_back(section.points[i]);
     }
     return parts;
 }
@@ -156,7 +161,8 @@ std::vector<std::vector<Vec2>> parts_around(const Section& section, const Vec2& 
 std::vector<Vec3> used_points(const TriMesh& mesh) {
     std::vector<bool> used(mesh.points.size(), false);
     for (const Triangle& t : mesh.triangles)
-        for (int i : t) used[i] = true;
+        for (int i : t)
+            used[i] = true;
     std::vector<Vec3> points;
     for (std::size_t i = 0; i < used.size(); ++i)
         if (used[i]) points.push_back(mesh.points[i]);
@@ -236,7 +242,8 @@ DevelopabilityMeasure measure_developability(const Garment& garment, const Point
     std::vector<double> angles(garment.node_count, 0);
     for (int t = 0; t < int(garment.triangles.size()); ++t) {
         const Triangle n = garment.nodes(t);
-        for (int k = 0; k < 3; ++k) angles[n[k]] += angle_at(x[n[k]], x[n[(k + 1) % 3]], x[n[(k + 2) % 3]]);
+        for (int k = 0; k < 3; ++k)
+            angles[n[k]] += angle_at(x[n[k]], x[n[(k + 1) % 3]], x[n[(k + 2) % 3]]);
     }
     const std::vector<bool> inner = inner_nodes_off_seams(garment);
     DevelopabilityMeasure measure;
@@ -276,7 +283,8 @@ double seam_gap_max(const Garment& garment, const Points& x) {
     return gap;
 }
 
-IntersectionCount count_intersections(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body) {
+IntersectionCount count_intersections(const std::vector<Triangle>& cloth, const Points& x,
+                                      const TriMesh& body) {
     const TriMesh mesh = {x, cloth};
     return {int(intersecting_pairs(mesh, body).size()), int(self_intersecting_pairs(mesh).size())};
 }

@@ -10,18 +10,21 @@
 
 namespace toile {
 
-/// Weighted by flat area; p99 is that of the absolute value: 99 % of the area stays below it. All zero over nothing.
+/// Weighted by flat area; p99 is that of the absolute value: 99 % of the area stays below it. All zero over
+/// nothing.
 struct Spread {
     double min = 0, max = 0, p99 = 0, mean = 0;
 };
 
-/// Strain per triangle of the written mesh: stretch - 1 along warp and weft, principal stretches - 1 (both of each
-/// triangle), and the angle (rad) by which warp and weft have left their right angle (positive: they have closed).
-/// Cloth gathered into an eased seam is not strained: there, compression counts as 0.
+/// Strain per triangle of the written mesh: stretch - 1 along warp and weft, principal stretches - 1 (both of
+/// each triangle), and the angle (rad) by which warp and weft have left their right angle (positive: they
+/// have closed). Cloth gathered into an eased seam is not strained: there, compression counts as 0.
 struct StrainMeasure {
     Spread warp, weft, principal, shear;
-    double limit_warp = 0, limit_weft = 0, limit_shear = 0; ///< the tightest of the fabrics used; 0 when none has one
-    double compressed_area = 0; ///< share of the area off eased seams whose smaller principal stretch is below 0.98
+    /// The tightest of the fabrics used; 0 when none has one.
+    double limit_warp = 0, limit_weft = 0, limit_shear = 0;
+    /// Share of the area off eased seams whose smaller principal stretch is below 0.98.
+    double compressed_area = 0;
 };
 
 /// Largest and mean |2 pi - sum of angles| (rad) over inner nodes off seams and darts.
@@ -29,8 +32,9 @@ struct DevelopabilityMeasure {
     double angle_defect_mean = 0, angle_defect_max = 0;
 };
 
-/// Ease at a height: girth of the garment minus girth of the body, metres, both by tape measure (convex hull);
-/// `found` is false where the garment does not go round the torso. Where several layers do, the tightest counts.
+/// Ease at a height: girth of the garment minus girth of the body, metres, both by tape measure (convex
+/// hull); `found` is false where the garment does not go round the torso. Where several layers do, the
+/// tightest counts.
 struct EaseMeasure {
     bool found = false;
     double garment = 0, body = 0, ease = 0;
@@ -55,7 +59,8 @@ EaseMeasure measure_ease(const Garment& garment, const Points& x, const TriMesh&
 double seam_gap_max(const Garment& garment, const Points& x);
 
 /// By exact predicates; `cloth` is over nodes.
-IntersectionCount count_intersections(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body);
+IntersectionCount count_intersections(const std::vector<Triangle>& cloth, const Points& x,
+                                      const TriMesh& body);
 
 /// Smallest distance between cloth and body, metres; 0 when they intersect, infinity when either is empty.
 double clearance_min(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body);

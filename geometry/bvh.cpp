@@ -26,7 +26,8 @@ struct Bvh::Builder {
         items.reserve(boxes.size());
         for (int i = 0; i < int(boxes.size()); ++i) {
             const bool empty = boxes[i].isEmpty();
-            items.push_back({boxes[i], empty ? Vec3(Vec3::Zero()) : Vec3(0.5 * (boxes[i].min() + boxes[i].max())), i});
+            items.push_back(
+                {boxes[i], empty ? Vec3(Vec3::Zero()) : Vec3(0.5 * (boxes[i].min() + boxes[i].max())), i});
         }
         nodes.reserve(boxes.size());
         if (!items.empty()) build(0, int(items.size()), 0);
@@ -124,7 +125,8 @@ void Bvh::refit(const std::vector<Box>& boxes) {
     if (boxes.size() != order_.size())
         throw std::invalid_argument("the tree was built over " + std::to_string(order_.size()) +
                                     " boxes and cannot be refitted to " + std::to_string(boxes.size()));
-    for (std::size_t i = 0; i < order_.size(); ++i) boxes_[i] = boxes[order_[i]];
+    for (std::size_t i = 0; i < order_.size(); ++i)
+        boxes_[i] = boxes[order_[i]];
     for (int n = int(nodes_.size()) - 1; n >= 0; --n) {
         Node& node = nodes_[n];
         if (!node.leaf()) {
@@ -132,7 +134,8 @@ void Bvh::refit(const std::vector<Box>& boxes) {
             continue;
         }
         node.box.setEmpty();
-        for (int i = node.begin; i < node.end; ++i) node.box.extend(boxes_[i]);
+        for (int i = node.begin; i < node.end; ++i)
+            node.box.extend(boxes_[i]);
     }
 }
 
@@ -159,7 +162,8 @@ std::vector<Box> edge_boxes(const Points& p, const std::vector<std::array<int, 2
 std::vector<Box> point_boxes(const Points& p, double margin) {
     std::vector<Box> boxes(p.size());
     const Vec3 grow = Vec3::Constant(margin);
-    for (std::size_t i = 0; i < p.size(); ++i) boxes[i] = Box(p[i] - grow, p[i] + grow);
+    for (std::size_t i = 0; i < p.size(); ++i)
+        boxes[i] = Box(p[i] - grow, p[i] + grow);
     return boxes;
 }
 

@@ -7,9 +7,10 @@ namespace toile {
 
 using Box = Eigen::AlignedBox3d;
 
-/// A binary tree of axis-aligned boxes over items (points, edges, triangles). The tree's shape is fixed when it
-/// is built; `refit` moves the boxes. Traversal order, and so every result, depends on the input alone.
-/// Queries are const and may run on many threads at once. Boxes are finite or empty; an empty box meets nothing.
+/// A binary tree of axis-aligned boxes over items (points, edges, triangles). The tree's shape is fixed when
+/// it is built; `refit` moves the boxes. Traversal order, and so every result, depends on the input alone.
+/// Queries are const and may run on many threads at once. Boxes are finite or empty; an empty box meets
+/// nothing.
 class Bvh {
 public:
     Bvh() = default;
@@ -27,9 +28,9 @@ public:
     /// Calls visit(i, j), i < j, once for every two items of this tree whose boxes meet.
     template <class Visit> void overlapping_pairs(Visit&& visit) const;
 
-    /// The item nearest to p by `squared_distance(item)`; -1 and nothing called when the tree is empty or when
-    /// everything is farther than sqrt(limit). `limit` is reduced to the squared distance found. Of items equally
-    /// near the lowest is returned.
+    /// The item nearest to p by `squared_distance(item)`; -1 and nothing called when the tree is empty or
+    /// when everything is farther than sqrt(limit). `limit` is reduced to the squared distance found. Of
+    /// items equally near the lowest is returned.
     template <class Distance> int nearest(const Vec3& p, double& limit, Distance&& squared_distance) const;
 
     /// The same for something that lies within `query` (an edge, a triangle).
@@ -56,7 +57,8 @@ private:
     std::vector<int> order_;
     std::vector<Box> boxes_; ///< of the items, in the tree's order
 
-    template <class Visit> void leaf_pairs(const Node& a, const Bvh& other, const Node& b, Visit& visit) const;
+    template <class Visit>
+    void leaf_pairs(const Node& a, const Bvh& other, const Node& b, Visit& visit) const;
 };
 
 /// Boxes of triangles, edges or points, grown by `margin` on every side.

@@ -29,7 +29,9 @@ inline double squared_distance(const Box& a, const Box& b) {
     return sum;
 }
 
-inline double size_of(const Box& b) { return (b.max() - b.min()).sum(); }
+inline double size_of(const Box& b) {
+    return (b.max() - b.min()).sum();
+}
 
 } // namespace bvh_detail
 
@@ -120,7 +122,8 @@ template <class Distance> int Bvh::nearest(const Vec3& p, double& limit, Distanc
     return nearest(Box(p, p), limit, squared_distance);
 }
 
-template <class Distance> int Bvh::nearest(const Box& query, double& limit, Distance&& squared_distance) const {
+template <class Distance>
+int Bvh::nearest(const Box& query, double& limit, Distance&& squared_distance) const {
     if (nodes_.empty()) return -1;
     struct Entry {
         int node;

@@ -39,8 +39,8 @@ void keep_nearer_segment(Nearest& best, int i, int j, const OnSegment& s) {
 // Below this squared sine of the angle of two directions, a solution that divides by it is not trusted alone.
 constexpr double nearly_parallel = 1e-12;
 
-// Foot of the perpendicular from the origin on the plane of a triangle, as weights of the corners: the sign of each
-// tells on which side of the opposite side it falls.
+// Foot of the perpendicular from the origin on the plane of a triangle, as weights of the corners: the sign
+// of each tells on which side of the opposite side it falls.
 struct Foot {
     double a, b, c;
     bool sliver; ///< the plane is uncertain, and so are the signs
@@ -71,7 +71,9 @@ void keep_nearer_end(Nearest& best, int end, int i, int j, const OnSegment& s) {
 
 } // namespace
 
-double nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) { return origin_on_segment(a - p, b - p).t; }
+double nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
+    return origin_on_segment(a - p, b - p).t;
+}
 
 Nearest nearest_point_triangle(const Vec3& p, const Vec3& a_, const Vec3& b_, const Vec3& c_) {
     const Vec3 a = a_ - p, b = b_ - p, c = c_ - p;

@@ -24,9 +24,9 @@ Nearest nearest_edge_edge(const Vec3& a0, const Vec3& a1, const Vec3& b0, const 
 /// Nearest point of a segment to p, as its parameter in [0, 1]; 0 for a segment of no length.
 double nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b);
 
-/// From the nearest point of the first simplex to that of the second: point - triangle point is `x` = p, a, b, c,
-/// edge - edge is a0, a1, b0, b1. Differences are taken first, so that a small gap far from the origin keeps its
-/// digits.
+/// From the nearest point of the first simplex to that of the second: point - triangle point is `x` = p, a,
+/// b, c, edge - edge is a0, a1, b0, b1. Differences are taken first, so that a small gap far from the origin
+/// keeps its digits.
 Vec3 gap_point_triangle(const Nearest& nearest, const std::array<Vec3, 4>& x);
 Vec3 gap_edge_edge(const Nearest& nearest, const std::array<Vec3, 4>& x);
 

@@ -16,8 +16,9 @@ struct HalfEdge {
 void check_triangle(const Triangle& t, int index, int point_count) {
     for (int i : t)
         if (i < 0 || i >= point_count)
-            throw std::invalid_argument("triangle " + std::to_string(index) + " names point " + std::to_string(i) +
-                                        ", expected an index below " + std::to_string(point_count));
+            throw std::invalid_argument("triangle " + std::to_string(index) + " names point " +
+                                        std::to_string(i) + ", expected an index below " +
+                                        std::to_string(point_count));
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
         throw std::invalid_argument("triangle " + std::to_string(index) + " names a point twice (" +
                                     std::to_string(t[0]) + ", " + std::to_string(t[1]) + ", " +
@@ -25,7 +26,9 @@ void check_triangle(const Triangle& t, int index, int point_count) {
 }
 
 // Ends of the edge opposite corner k, in the direction of the triangle.
-std::array<int, 2> side(const Triangle& t, int k) { return {t[(k + 1) % 3], t[(k + 2) % 3]}; }
+std::array<int, 2> side(const Triangle& t, int k) {
+    return {t[(k + 1) % 3], t[(k + 2) % 3]};
+}
 
 // Half-edges bucketed by their lower end: bucket i is [start[i], start[i + 1]).
 std::vector<HalfEdge> bucket_by_low_end(const std::vector<Triangle>& triangles, std::vector<int>& start) {
@@ -34,7 +37,8 @@ std::vector<HalfEdge> bucket_by_low_end(const std::vector<Triangle>& triangles, 
             const auto [a, b] = side(t, k);
             ++start[std::min(a, b) + 1];
         }
-    for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
+    for (std::size_t i = 1; i < start.size(); ++i)
+        start[i] += start[i - 1];
     std::vector<HalfEdge> halves(3 * triangles.size());
     std::vector<int> cursor(start.begin(), start.end() - 1);
     for (int t = 0; t < int(triangles.size()); ++t)
@@ -46,14 +50,16 @@ std::vector<HalfEdge> bucket_by_low_end(const std::vector<Triangle>& triangles, 
 }
 
 int root(std::vector<int>& parent, int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    while (parent[i] != i)
+        i = parent[i] = parent[parent[i]];
     return i;
 }
 
 } // namespace
 
 EdgeTable make_edges(const std::vector<Triangle>& triangles, int point_count) {
-    for (int t = 0; t < int(triangles.size()); ++t) check_triangle(triangles[t], t, point_count);
+    for (int t = 0; t < int(triangles.size()); ++t)
+        check_triangle(triangles[t], t, point_count);
     std::vector<int> start(point_count + 1, 0);
     std::vector<HalfEdge> halves = bucket_by_low_end(triangles, start);
 
@@ -80,20 +86,23 @@ EdgeTable make_edges(const std::vector<Triangle>& triangles, int point_count) {
 
 std::vector<int> pieces(const std::vector<Triangle>& triangles, int point_count) {
     std::vector<int> parent(point_count);
-    for (int i = 0; i < point_count; ++i) parent[i] = i;
+    for (int i = 0; i < point_count; ++i)
+        parent[i] = i;
     for (const Triangle& t : triangles)
         for (int k = 1; k < 3; ++k) {
             const int a = root(parent, t[0]), b = root(parent, t[k]);
             parent[std::max(a, b)] = std::min(a, b);
         }
-    for (int i = 0; i < point_count; ++i) parent[i] = root(parent, i);
+    for (int i = 0; i < point_count; ++i)
+        parent[i] = root(parent, i);
     return parent;
 }
 
 int count_pieces(const std::vector<Triangle>& triangles, int point_count) {
     const std::vector<int> piece = pieces(triangles, point_count);
     std::vector<int> lowest;
-    for (const Triangle& t : triangles) lowest.push_back(piece[t[0]]);
+    for (const Triangle& t : triangles)
+        lowest.push_back(piece[t[0]]);
     std::sort(lowest.begin(), lowest.end());
     return int(std::unique(lowest.begin(), lowest.end()) - lowest.begin());
 }

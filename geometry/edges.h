@@ -8,10 +8,10 @@ namespace toile {
 /// The edges of a set of triangles, merged: an edge of a closed seam appears once and knows every triangle on
 /// it. One triangle: border. Two: inner edge or seam. Three and more: a waistband or a lining joins there.
 struct EdgeTable {
-    std::vector<std::array<int, 2>> ends;          ///< smaller index first; sorted
-    std::vector<int> first;                        ///< edge e has triangles incident[first[e] .. first[e + 1])
-    std::vector<int> incident;                     ///< triangles, ascending within an edge
-    std::vector<std::array<int, 3>> of_triangle;   ///< edge k of a triangle is opposite its corner k
+    std::vector<std::array<int, 2>> ends;        ///< smaller index first; sorted
+    std::vector<int> first;                      ///< edge e has triangles incident[first[e] .. first[e + 1])
+    std::vector<int> incident;                   ///< triangles, ascending within an edge
+    std::vector<std::array<int, 3>> of_triangle; ///< edge k of a triangle is opposite its corner k
 
     int size() const { return int(ends.size()); }
     int triangles_at(int e) const { return first[e + 1] - first[e]; }

@@ -25,7 +25,9 @@ using Face = Kernel::Triangle_3;
 using Shape = std::variant<Point, Segment, Face>;
 using Pairs = std::vector<std::array<int, 2>>;
 
-Point to_cgal(const Vec3& p) { return {p[0], p[1], p[2]}; }
+Point to_cgal(const Vec3& p) {
+    return {p[0], p[1], p[2]};
+}
 
 // What two or three points span: CGAL's predicates require that a segment and a triangle are not degenerate.
 Shape span(const Point& a, const Point& b) {
@@ -39,8 +41,12 @@ Shape span(const Point& a, const Point& b, const Point& c) {
     return span(ends.first, ends.second);
 }
 
-bool meet(const Point& a, const Point& b) { return a == b; }
-template <class A, class B> bool meet(const A& a, const B& b) { return CGAL::do_intersect(a, b); }
+bool meet(const Point& a, const Point& b) {
+    return a == b;
+}
+template <class A, class B> bool meet(const A& a, const B& b) {
+    return CGAL::do_intersect(a, b);
+}
 
 bool meet_shapes(const Shape& a, const Shape& b) {
     return std::visit([](const auto& s, const auto& t) { return meet(s, t); }, a, b);
@@ -77,8 +83,9 @@ std::vector<TriangleBox> boxes_of(const TriMesh& mesh, std::size_t first_id) {
 void require_finite(const TriMesh& mesh) {
     for (int i = 0; i < int(mesh.points.size()); ++i)
         if (!mesh.points[i].allFinite())
-            throw std::invalid_argument("point " + std::to_string(i) +
-                                        " is not finite, expected finite coordinates to look for intersections");
+            throw std::invalid_argument(
+                "point " + std::to_string(i) +
+                " is not finite, expected finite coordinates to look for intersections");
 }
 
 // What every triangle spans. Found once: it costs as much as a test of two triangles.
@@ -166,10 +173,11 @@ Pairs self_intersecting_pairs(const TriMesh& mesh) {
     Pairs pairs;
     const std::vector<Shape> shapes = shapes_of(mesh);
     std::vector<TriangleBox> boxes = boxes_of(mesh, 0);
-    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const TriangleBox& s, const TriangleBox& t) {
-        const auto [low, high] = std::minmax(s.triangle, t.triangle);
-        if (meet_in_mesh(mesh, shapes, low, high)) pairs.push_back({low, high});
-    });
+    CGAL::box_self_intersection_d(boxes.begin(), boxes.end(),
+                                  [&](const TriangleBox& s, const TriangleBox& t) {
+                                      const auto [low, high] = std::minmax(s.triangle, t.triangle);
+                                      if (meet_in_mesh(mesh, shapes, low, high)) pairs.push_back({low, high});
+                                  });
     std::sort(pairs.begin(), pairs.end());
     return pairs;
 }

@@ -18,7 +18,8 @@ namespace {
 // threads than cores need both.
 struct Workers {
     explicit Workers(int count)
-        : control(tbb::global_control::max_allowed_parallelism, std::size_t(count)), arena(count), count(count) {}
+        : control(tbb::global_control::max_allowed_parallelism, std::size_t(count)), arena(count),
+          count(count) {}
     tbb::global_control control;
     tbb::task_arena arena;
     int count;
@@ -38,16 +39,21 @@ void set_threads(int count) {
     workers() = std::make_unique<Workers>(wanted);
 }
 
-int threads() { return workers()->count; }
+int threads() {
+    return workers()->count;
+}
 
-int chunk_count(int n, int chunk) { return n <= 0 ? 0 : (n - 1) / std::max(chunk, 1) + 1; }
+int chunk_count(int n, int chunk) {
+    return n <= 0 ? 0 : (n - 1) / std::max(chunk, 1) + 1;
+}
 
 void parallel_for(int n, int chunk, const std::function<void(int, int)>& body) {
     chunk = std::max(chunk, 1);
     const int chunks = chunk_count(n, chunk);
     const auto run = [&](int c) { body(c * chunk, std::min(n - c * chunk, chunk) + c * chunk); };
     if (chunks <= 1 || threads() == 1) {
-        for (int c = 0; c < chunks; ++c) run(c);
+        for (int c = 0; c < chunks; ++c)
+            run(c);
         return;
     }
     workers()->arena.execute([&] { tbb::parallel_for(0, chunks, run); });
@@ -58,7 +64,8 @@ double parallel_sum(int n, int chunk, const std::function<double(int, int)>& par
     std::vector<double> parts(chunk_count(n, chunk));
     parallel_for(n, chunk, [&](int begin, int end) { parts[begin / chunk] = part(begin, end); });
     double sum = 0;
-    for (double p : parts) sum += p;
+    for (double p : parts)
+        sum += p;
     return sum;
 }
 

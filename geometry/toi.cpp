@@ -39,9 +39,9 @@ double rounding_of(const Motion& m) {
     return 8 * std::numeric_limits<double>::epsilon() * largest + finite;
 }
 
-// Time from now at which the projections of the two simplices on `n` come within `target`: until then they are
-// at least that far apart, whatever unit vector n is. Every corner moves linearly, so each pair of corners gives
-// its own time and the earliest counts.
+// Time from now at which the projections of the two simplices on `n` come within `target`: until then they
+// are at least that far apart, whatever unit vector n is. Every corner moves linearly, so each pair of
+// corners gives its own time and the earliest counts.
 template <class Kind>
 double time_along(const Vec3& n, const std::array<Vec3, 4>& x, const std::array<Vec3, 4>& dx, double target) {
     std::array<double, 4> place, speed;
@@ -78,7 +78,8 @@ template <class Kind> double time_of_impact(const Motion& m, const ToiOptions& o
         if (t + step >= 1) return 1;
         if (!(step > 0)) break;
         t += step;
-        for (int i = 1; i < 4; ++i) x[i] = local.x[i] + t * local.dx[i];
+        for (int i = 1; i < 4; ++i)
+            x[i] = local.x[i] + t * local.dx[i];
         gap = Kind::gap(x);
         distance = gap.norm();
         if (distance <= near_enough) break;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-// Time of impact of two moving simplices by conservative advancement: as additive continuous collision detection
-// (Li, Kaufman, Jiang: Codimensional Incremental Potential Contact, 2021, section 5), with the closing speed
-// bounded along the line of the nearest points (Mirtich 1996) rather than by the lengths of the motions. Sliding
-// and rotation then cost nothing, and each step is Newton's on the distance, from the safe side.
+// Time of impact of two moving simplices by conservative advancement: as additive continuous collision
+// detection (Li, Kaufman, Jiang: Codimensional Incremental Potential Contact, 2021, section 5), with the
+// closing speed bounded along the line of the nearest points (Mirtich 1996) rather than by the lengths of the
+// motions. Sliding and rotation then cost nothing, and each step is Newton's on the distance, from the safe
+// side.
 
 #include "geometry/types.h"
 
@@ -23,10 +24,10 @@ struct ToiOptions {
 };
 
 /// A t in [0, 1] such that moving by t * dx keeps the pair's distance above
-/// min_distance + keep * (start distance - min_distance) all the way. Conservative: never later than the truth,
-/// and the distance at a t below 1 is within 5 % of what is to be kept. Distances count as smaller by a few units
-/// in the last place of the coordinates, which is what storing x + t * dx may cost.
-/// 0 when the pair starts at or below min_distance, and when the motion is not finite.
+/// min_distance + keep * (start distance - min_distance) all the way. Conservative: never later than the
+/// truth, and the distance at a t below 1 is within 5 % of what is to be kept. Distances count as smaller by
+/// a few units in the last place of the coordinates, which is what storing x + t * dx may cost. 0 when the
+/// pair starts at or below min_distance, and when the motion is not finite.
 double time_of_impact_point_triangle(const Motion& m, const ToiOptions& options); ///< x = p, a, b, c
 double time_of_impact_edge_edge(const Motion& m, const ToiOptions& options);      ///< x = a0, a1, b0, b1
 

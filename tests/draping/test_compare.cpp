@@ -14,14 +14,16 @@ TEST_CASE("meshes of the same triangles are compared point by point") {
     CHECK(compare(a, a).max == 0);
 
     TriMesh b = a;
-    for (Vec3& p : b.points) p += Vec3(0.003, 0, 0.004); // partly within the plane: it counts
+    for (Vec3& p : b.points)
+        p += Vec3(0.003, 0, 0.004); // partly within the plane: it counts
     CHECK(compare(a, b).rms == Approx(0.005));
     CHECK(compare(a, b).mean == Approx(0.005));
     CHECK(compare(a, b).max == Approx(0.005));
 
     // Distance that grows linearly from 0 to 1 cm: the mean square over the area is a third.
     TriMesh c = a;
-    for (Vec3& p : c.points) p[2] = 0.01 * p[0] / 0.4;
+    for (Vec3& p : c.points)
+        p[2] = 0.01 * p[0] / 0.4;
     CHECK(compare(a, c).rms == Approx(0.01 / std::sqrt(3.0)));
     CHECK(compare(a, c).max == Approx(0.01));
     CHECK(compare(a, c).where[0] == Approx(0.4));
@@ -42,7 +44,8 @@ TEST_CASE("meshes of different resolution are compared surface to surface, both 
     CHECK(compare(a, longer).where[0] == Approx(0.5));
 
     // Refinements of one sphere come together as their edges squared.
-    const TriMesh coarse = test::ellipsoid({0.5, 0.5, 0.5}, 40, 20), fine = test::ellipsoid({0.5, 0.5, 0.5}, 160, 80);
+    const TriMesh coarse = test::ellipsoid({0.5, 0.5, 0.5}, 40, 20),
+                  fine = test::ellipsoid({0.5, 0.5, 0.5}, 160, 80);
     const double sag = 0.5 * (1 - std::cos(EIGEN_PI / 40));
     CHECK(compare(coarse, fine).max < 2.5 * sag);
     CHECK(compare(coarse, fine).max > 0.5 * sag);

@@ -30,7 +30,8 @@ Cloth cloth_of(const TriMesh& mesh) {
     c.garment.rest.edges.assign(mesh.triangles.size(), Mat2::Zero());
     c.garment.uv.assign(mesh.points.size(), Vec2::Zero());
     c.garment.node_count = int(mesh.points.size());
-    for (int i = 0; i < c.garment.node_count; ++i) c.garment.node_of_vertex.push_back(i);
+    for (int i = 0; i < c.garment.node_count; ++i)
+        c.garment.node_of_vertex.push_back(i);
     c.garment.edges = make_edges(mesh.triangles, c.garment.node_count);
     c.garment.seam_edge.assign(c.garment.edges.size(), false);
     c.garment.eased_triangle.assign(mesh.triangles.size(), false);
@@ -43,7 +44,8 @@ Cloth cloth_of(const TriMesh& mesh) {
 TEST_CASE("inspection of a flat square with a body under it") {
     const Cloth c = flat_square();
     TriMesh body = test::grid(4, 4, 0.1, -0.003);
-    for (Vec3& p : body.points) p -= Vec3(0.1, 0.1, 0);
+    for (Vec3& p : body.points)
+        p -= Vec3(0.1, 0.1, 0);
     Fabric fabric;
     fabric.limit_warp = 0.01;
     const Inspection i = inspect(c.garment, c.x, body, {fabric});
@@ -102,8 +104,10 @@ TEST_CASE("nodes that a format has split along a seam count as one") {
     TriMesh mesh = test::grid(3, 3, 0.1);
     const int shift = int(mesh.points.size());
     const TriMesh right = test::grid(3, 3, 0.1);
-    for (const Vec3& p : right.points) mesh.points.push_back(p + Vec3(mesh.points[3][0], 0, 0));
-    for (const Triangle& t : right.triangles) mesh.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+    for (const Vec3& p : right.points)
+        mesh.points.push_back(p + Vec3(mesh.points[3][0], 0, 0));
+    for (const Triangle& t : right.triangles)
+        mesh.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
     const Cloth c = cloth_of(mesh);
     const Inspection i = inspect(c.garment, c.x, {});
     CHECK(i.joined_nodes == 4);

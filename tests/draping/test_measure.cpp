@@ -20,7 +20,8 @@ const test::FlatMesh sheet = test::jittered_rectangle(0.4, 0.3, 0.03, 0.2, 1);
 
 Points mapped(const std::function<Vec3(const Vec2&)>& map) {
     Points x;
-    for (const Vec2& p : sheet.points) x.push_back(map(p));
+    for (const Vec2& p : sheet.points)
+        x.push_back(map(p));
     return x;
 }
 
@@ -34,7 +35,8 @@ Tube tube_garment(double radius, double bottom, double height, int around, int a
     const double arc = 2 * EIGEN_PI - open;
     test::FlatMesh flat;
     for (int j = 0; j <= along; ++j)
-        for (int i = 0; i <= around; ++i) flat.points.push_back({radius * arc * i / around, height * j / along});
+        for (int i = 0; i <= around; ++i)
+            flat.points.push_back({radius * arc * i / around, height * j / along});
     const auto at = [&](int j, int i) { return j * (around + 1) + i; };
     for (int j = 0; j < along; ++j)
         for (int i = 0; i < around; ++i) {
@@ -56,7 +58,8 @@ Tube tube_garment(double radius, double bottom, double height, int around, int a
         }
     g.node_count = int(tube.x.size());
     std::vector<Triangle> nodes;
-    for (int t = 0; t < int(g.triangles.size()); ++t) nodes.push_back(g.nodes(t));
+    for (int t = 0; t < int(g.triangles.size()); ++t)
+        nodes.push_back(g.nodes(t));
     g.edges = make_edges(nodes, g.node_count);
     g.seam_edge.assign(g.edges.size(), false);
     for (int e = 0; e < g.edges.size(); ++e) {
@@ -105,9 +108,8 @@ TEST_CASE("strain of a stretched sheet is that of its deformation, along its own
 
 TEST_CASE("shear is the angle by which warp and weft close, and a mirrored sheet has none") {
     const double angle = 0.1;
-    const Points x = mapped([&](const Vec2& p) {
-        return Vec3(p[0] + std::sin(angle) * p[1], std::cos(angle) * p[1], 0);
-    });
+    const Points x =
+        mapped([&](const Vec2& p) { return Vec3(p[0] + std::sin(angle) * p[1], std::cos(angle) * p[1], 0); });
     const StrainMeasure s = measure_strain(test::garment_of(sheet), x, {});
     CHECK(s.shear.min == Approx(angle));
     CHECK(s.shear.max == Approx(angle));
@@ -161,7 +163,8 @@ TEST_CASE("angle defects: none on a tube, those of its corners on a pyramid, non
     const Tube tube = tube_garment(0.2, 0, 0.5, 24, 10);
     CHECK(measure_developability(tube.garment, tube.x).angle_defect_max < 1e-12);
 
-    // A square pyramid of height 1 over half diagonals of 1: four equilateral triangles of side sqrt(2) at its top.
+    // A square pyramid of height 1 over half diagonals of 1: four equilateral triangles of side sqrt(2) at
+    // its top.
     const test::FlatMesh star = {{{0, 0}, {1, 0}, {0, 1}, {-1, 0}, {0, -1}},
                                  {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}}};
     Garment pyramid = test::garment_of(star);
@@ -185,7 +188,8 @@ TEST_CASE("ease is the difference of girths by tape measure") {
     // Higher up the ellipsoid is thinner: at half its height by sqrt(3)/2. The skirt ends at 0.1.
     CHECK_FALSE(measure_ease(skirt.garment, skirt.x, body, 0.4).found);
     const Tube top = tube_garment(0.22, 0.3, 0.4, 100, 9);
-    CHECK(measure_ease(top.garment, top.x, body, 0.4).body == Approx(2 * EIGEN_PI * 0.2 * std::sqrt(0.75)).epsilon(1e-3));
+    CHECK(measure_ease(top.garment, top.x, body, 0.4).body ==
+          Approx(2 * EIGEN_PI * 0.2 * std::sqrt(0.75)).epsilon(1e-3));
     CHECK(measure_ease(top.garment, top.x, body, 0.4).found);
     CHECK_FALSE(measure_ease(top.garment, top.x, body, 2.0).found);
 }
@@ -195,15 +199,19 @@ TEST_CASE("an open front and a tube around an arm do not go round the torso") {
     const Tube open = tube_garment(0.22, -0.3, 0.4, 100, 9, 0.1 * EIGEN_PI);
     CHECK_FALSE(measure_ease(open.garment, open.x, body, 0.0).found);
     Tube sleeve = tube_garment(0.06, -0.3, 0.4, 40, 9);
-    for (Vec3& p : sleeve.x) p[0] += 0.4;
+    for (Vec3& p : sleeve.x)
+        p[0] += 0.4;
     CHECK_FALSE(measure_ease(sleeve.garment, sleeve.x, body, 0.0).found);
 }
 
 TEST_CASE("the torso is told from the arms") {
-    TriMesh body = test::ellipsoid({0.2, 0.8, 0.15}, 60, 60), arm = test::ellipsoid({0.05, 0.4, 0.05}, 30, 30);
+    TriMesh body = test::ellipsoid({0.2, 0.8, 0.15}, 60, 60),
+            arm = test::ellipsoid({0.05, 0.4, 0.05}, 30, 30);
     const int shift = int(body.points.size());
-    for (const Vec3& p : arm.points) body.points.push_back(p + Vec3(0.4, 0, 0));
-    for (const Triangle& t : arm.triangles) body.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
+    for (const Vec3& p : arm.points)
+        body.points.push_back(p + Vec3(0.4, 0, 0));
+    for (const Triangle& t : arm.triangles)
+        body.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
     const Tube skirt = tube_garment(0.22, -0.3, 0.4, 100, 9);
     // Ramanujan's perimeter of an ellipse with half axes 0.2 and 0.15.
     const double a = 0.2, b = 0.15;
@@ -227,9 +235,11 @@ TEST_CASE("intersections are counted with the body and with itself") {
     IntersectionCount n = count_intersections(sheet_above.triangles, sheet_above.points, body);
     CHECK(n.cloth_avatar == 0);
     CHECK(n.cloth_cloth == 0);
-    TriMesh through = test::grid(1, 1, 0.5, 0.5); // from the middle through the corner (0, 0, .5)..(.5, .5, .5): inside
+    TriMesh through =
+        test::grid(1, 1, 0.5, 0.5); // from the middle through the corner (0, 0, .5)..(.5, .5, .5): inside
     CHECK(count_intersections(through.triangles, through.points, body).cloth_avatar == 0);
-    for (Vec3& p : through.points) p[0] += 0.75; // now it pierces the face x = 1
+    for (Vec3& p : through.points)
+        p[0] += 0.75; // now it pierces the face x = 1
     CHECK(count_intersections(through.triangles, through.points, body).cloth_avatar > 0);
     TriMesh crossed = sheet_above;
     crossed.points[60][2] -= 0.05;
@@ -247,11 +257,14 @@ double slow_clearance(const TriMesh& a, const TriMesh& b) {
         for (const Triangle& t : b.triangles)
             for (int i = 0; i < 3; ++i) {
                 const auto &p = a.points, &q = b.points;
-                squared = std::min(squared, nearest_point_triangle(p[s[i]], q[t[0]], q[t[1]], q[t[2]]).squared);
-                squared = std::min(squared, nearest_point_triangle(q[t[i]], p[s[0]], p[s[1]], p[s[2]]).squared);
+                squared =
+                    std::min(squared, nearest_point_triangle(p[s[i]], q[t[0]], q[t[1]], q[t[2]]).squared);
+                squared =
+                    std::min(squared, nearest_point_triangle(q[t[i]], p[s[0]], p[s[1]], p[s[2]]).squared);
                 for (int j = 0; j < 3; ++j)
-                    squared = std::min(squared, nearest_edge_edge(p[s[i]], p[s[(i + 1) % 3]], q[t[j]],
-                                                                  q[t[(j + 1) % 3]]).squared);
+                    squared = std::min(
+                        squared,
+                        nearest_edge_edge(p[s[i]], p[s[(i + 1) % 3]], q[t[j]], q[t[(j + 1) % 3]]).squared);
             }
     return std::sqrt(squared);
 }
@@ -264,7 +277,8 @@ TEST_CASE("clearance is that of comparing every corner, side and face") {
         TriMesh body = test::ellipsoid({0.2, 0.3, 0.25}, 12, 9), cloth = test::tube(0.4, 0.3, 11, 5, 0.02);
         const Eigen::AngleAxisd turn(random.in(0, 3), random.vec3().normalized());
         const Vec3 shift = 0.3 * random.vec3();
-        for (Vec3& p : cloth.points) p = turn * p + shift;
+        for (Vec3& p : cloth.points)
+            p = turn * p + shift;
         const double fast = clearance_min(cloth.triangles, cloth.points, body);
         if (count_intersections(cloth.triangles, cloth.points, body).cloth_avatar > 0)
             CHECK(fast == 0);

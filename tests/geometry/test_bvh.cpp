@@ -18,17 +18,19 @@ std::vector<Box> random_boxes(test::Random& random, int n, double size, int kind
     std::vector<Box> boxes;
     for (int i = 0; i < n; ++i) {
         Vec3 p = random.vec3();
-        if (kind == 1) p[1] = p[2] = 0;                                 // on a line
-        if (kind == 2) p = Vec3::Ones();                                // all in one place
-        if (kind == 3) p = Vec3::Ones() * std::pow(2.0, -(i % 900));    // crowded toward a point
-        if (kind == 4) p = (p * 4).array().round();                     // many equal
+        if (kind == 1) p[1] = p[2] = 0;                              // on a line
+        if (kind == 2) p = Vec3::Ones();                             // all in one place
+        if (kind == 3) p = Vec3::Ones() * std::pow(2.0, -(i % 900)); // crowded toward a point
+        if (kind == 4) p = (p * 4).array().round();                  // many equal
         const Vec3 half = (random.vec3(size)).cwiseAbs();
         boxes.push_back(kind == 5 && i % 3 == 0 ? Box() : Box(p - half, p + half));
     }
     return boxes;
 }
 
-bool meet(const Box& a, const Box& b) { return !a.isEmpty() && !b.isEmpty() && a.intersects(b); }
+bool meet(const Box& a, const Box& b) {
+    return !a.isEmpty() && !b.isEmpty() && a.intersects(b);
+}
 
 } // namespace
 

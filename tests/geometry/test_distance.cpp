@@ -20,8 +20,10 @@ double slow_squared(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
     std::vector<double> wa(a.size(), 1.0 / a.size()), wb(b.size(), 1.0 / b.size());
     const auto gap = [&] {
         Vec3 g = Vec3::Zero();
-        for (std::size_t i = 0; i < a.size(); ++i) g -= wa[i] * a[i];
-        for (std::size_t i = 0; i < b.size(); ++i) g += wb[i] * b[i];
+        for (std::size_t i = 0; i < a.size(); ++i)
+            g -= wa[i] * a[i];
+        for (std::size_t i = 0; i < b.size(); ++i)
+            g += wb[i] * b[i];
         return g;
     };
     const auto relax = [&](const std::vector<Vec3>& p, std::vector<double>& w, double sign) {
@@ -75,16 +77,33 @@ Nearest checked_edge_edge(const Points4& x) {
 // Random points made degenerate in various ways.
 Points4 awkward(test::Random& random, int kind) {
     Points4 x;
-    for (Vec3& p : x) p = random.vec3();
+    for (Vec3& p : x)
+        p = random.vec3();
     switch (kind % 8) {
-    case 1: x[3] = x[2]; break;                                        // a side of no length
-    case 2: x[3] = x[2] = x[1]; break;                                 // a point
-    case 3: x[3] = x[1] + random.in(-1, 2) * (x[2] - x[1]); break;     // three on a line
-    case 4: x[3] = x[2] + (x[1] - x[0]) * random.in(-2, 2); break;     // parallel edges
-    case 5: x[3] = x[2] + (x[1] - x[0]) + random.vec3(1e-8); break;    // nearly parallel edges
-    case 6: for (Vec3& p : x) p[2] = 0; break;                         // all in one plane
-    case 7: x[3] = 0.5 * (x[1] + x[2]) + random.vec3(1e-9); break;     // a sliver
-    default: break;
+    case 1:
+        x[3] = x[2];
+        break; // a side of no length
+    case 2:
+        x[3] = x[2] = x[1];
+        break; // a point
+    case 3:
+        x[3] = x[1] + random.in(-1, 2) * (x[2] - x[1]);
+        break; // three on a line
+    case 4:
+        x[3] = x[2] + (x[1] - x[0]) * random.in(-2, 2);
+        break; // parallel edges
+    case 5:
+        x[3] = x[2] + (x[1] - x[0]) + random.vec3(1e-8);
+        break; // nearly parallel edges
+    case 6:
+        for (Vec3& p : x)
+            p[2] = 0;
+        break; // all in one plane
+    case 7:
+        x[3] = 0.5 * (x[1] + x[2]) + random.vec3(1e-9);
+        break; // a sliver
+    default:
+        break;
     }
     return x;
 }
@@ -103,7 +122,8 @@ TEST_CASE("point-triangle distance is the one that minimisation finds") {
         CHECK(std::sqrt(n.squared) <= std::sqrt(slow_squared({x[0]}, {x[1], x[2], x[3]})) + 1e-8);
         CHECK(std::sqrt(n.squared) >= std::sqrt(slow_squared({x[0]}, {x[1], x[2], x[3]})) - 1e-4);
     }
-    for (int active : {0b0011, 0b0101, 0b1001, 0b0111, 0b1101, 0b1011, 0b1111}) CHECK(seen[active] > 0);
+    for (int active : {0b0011, 0b0101, 0b1001, 0b0111, 0b1101, 0b1011, 0b1111})
+        CHECK(seen[active] > 0);
 }
 
 TEST_CASE("edge-edge distance is the one that minimisation finds") {

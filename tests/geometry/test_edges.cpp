@@ -58,7 +58,8 @@ TEST_CASE("edge table equals a map of edges on random triangles, three and more 
             for (int c = 0; c < 3; ++c) {
                 auto ends = e.ends[e.of_triangle[t][c]];
                 CHECK(std::find(ends.begin(), ends.end(), triangles[t][c]) == ends.end());
-                for (int end : ends) CHECK(std::count(triangles[t].begin(), triangles[t].end(), end) == 1);
+                for (int end : ends)
+                    CHECK(std::count(triangles[t].begin(), triangles[t].end(), end) == 1);
             }
     }
 }
@@ -67,7 +68,8 @@ TEST_CASE("edge table of nothing, and of triangles that cannot be") {
     CHECK(make_edges({}, 0).size() == 0);
     CHECK(make_edges({}, 0).first == std::vector<int>{0});
     CHECK_THROWS_WITH(make_edges({{0, 1, 3}}, 3), Catch::Contains("triangle 0 names point 3"));
-    CHECK_THROWS_WITH(make_edges({{0, 1, 2}, {1, 2, 1}}, 3), Catch::Contains("triangle 1 names a point twice"));
+    CHECK_THROWS_WITH(make_edges({{0, 1, 2}, {1, 2, 1}}, 3),
+                      Catch::Contains("triangle 1 names a point twice"));
 }
 
 TEST_CASE("pieces are counted over shared points, stray points are none") {

@@ -34,7 +34,8 @@ bool cuts_itself(const Points& points, const Triangle& s, const Triangle& t) {
     bool first = true, result = false;
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) { // every rotation says the same
-            const Triangle a = {s[i], s[(i + 1) % 3], s[(i + 2) % 3]}, b = {t[j], t[(j + 1) % 3], t[(j + 2) % 3]};
+            const Triangle a = {s[i], s[(i + 1) % 3], s[(i + 2) % 3]},
+                           b = {t[j], t[(j + 1) % 3], t[(j + 2) % 3]};
             const bool cuts = !self_intersecting_pairs({points, {a, b}}).empty();
             CHECK(cuts == !self_intersecting_pairs({points, {{b[1], b[0], b[2]}, a}}).empty());
             if (first) result = cuts;
@@ -47,18 +48,18 @@ bool cuts_itself(const Points& points, const Triangle& s, const Triangle& t) {
 } // namespace
 
 TEST_CASE("triangles that share no point") {
-    CHECK(cuts_base({.2, .2, -1}, {.2, .2, 1}, {.3, .8, 1}));    // through the inside
+    CHECK(cuts_base({.2, .2, -1}, {.2, .2, 1}, {.3, .8, 1}));       // through the inside
     CHECK_FALSE(cuts_base({.2, .2, 1e-300}, {1, 0, 1}, {0, 1, 1})); // above by the least bit
-    CHECK(cuts_base({.2, .2, 0}, {1, 0, 1}, {0, 1, 1}));         // a corner touches the inside
-    CHECK(cuts_base({0, 0, 0}, {-1, 0, 0}, {0, -1, 0}));         // corner on corner, same plane
-    CHECK(cuts_base({.5, -1, 0}, {.5, 0, 0}, {1, -1, 0}));       // corner on side, same plane
-    CHECK(cuts_base({.1, .1, 0}, {.2, .1, 0}, {.1, .2, 0}));     // inside, same plane
-    CHECK(cuts_base({.1, .1, 0}, {2, .1, 0}, {.1, 2, 0}));       // overlap, same plane
-    CHECK(cuts_base({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));           // the same triangle
-    CHECK_FALSE(cuts_base({1, 1, 0}, {2, 1, 0}, {1, 2, 0}));     // beside, same plane
-    CHECK(cuts_base({.5, -1, -1}, {.5, 1, 1}, {.5, -1, 1}));     // side against side
-    CHECK_FALSE(cuts_base({0, 0, 1}, {1, 0, 1}, {0, 1, 1}));     // parallel
-    CHECK(cuts_base({-1, 0, 0}, {2, 0, 0}, {0, 0, 1}));          // a side lies along a side
+    CHECK(cuts_base({.2, .2, 0}, {1, 0, 1}, {0, 1, 1}));            // a corner touches the inside
+    CHECK(cuts_base({0, 0, 0}, {-1, 0, 0}, {0, -1, 0}));            // corner on corner, same plane
+    CHECK(cuts_base({.5, -1, 0}, {.5, 0, 0}, {1, -1, 0}));          // corner on side, same plane
+    CHECK(cuts_base({.1, .1, 0}, {.2, .1, 0}, {.1, .2, 0}));        // inside, same plane
+    CHECK(cuts_base({.1, .1, 0}, {2, .1, 0}, {.1, 2, 0}));          // overlap, same plane
+    CHECK(cuts_base({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));              // the same triangle
+    CHECK_FALSE(cuts_base({1, 1, 0}, {2, 1, 0}, {1, 2, 0}));        // beside, same plane
+    CHECK(cuts_base({.5, -1, -1}, {.5, 1, 1}, {.5, -1, 1}));        // side against side
+    CHECK_FALSE(cuts_base({0, 0, 1}, {1, 0, 1}, {0, 1, 1}));        // parallel
+    CHECK(cuts_base({-1, 0, 0}, {2, 0, 0}, {0, 0, 1}));             // a side lies along a side
 }
 
 TEST_CASE("triangles that are a segment or a point count as such") {
@@ -78,22 +79,22 @@ TEST_CASE("neighbours over an edge intersect only when folded flat onto each oth
     const auto folded = [](const Vec3& tip) {
         return cuts_itself({{0, 0, 0}, {1, 0, 0}, {.3, 1, 0}, tip}, {0, 1, 2}, {1, 0, 3});
     };
-    CHECK_FALSE(folded({.3, -1, 0}));        // flat
-    CHECK_FALSE(folded({.3, 0, 1}));         // at a right angle
-    CHECK_FALSE(folded({.3, 1, 1e-300}));    // all but closed
-    CHECK(folded({.3, 1, 0}));               // closed exactly
-    CHECK(folded({.9, .1, 0}));              // closed, another shape
-    CHECK(folded({5, .1, 0}));               // closed, the tip outside
-    CHECK_FALSE(folded({.5, 0, 0}));         // a neighbour of no area
-    CHECK_FALSE(folded({2, 0, 0}));          // a neighbour of no area beyond the edge's end
+    CHECK_FALSE(folded({.3, -1, 0}));     // flat
+    CHECK_FALSE(folded({.3, 0, 1}));      // at a right angle
+    CHECK_FALSE(folded({.3, 1, 1e-300})); // all but closed
+    CHECK(folded({.3, 1, 0}));            // closed exactly
+    CHECK(folded({.9, .1, 0}));           // closed, another shape
+    CHECK(folded({5, .1, 0}));            // closed, the tip outside
+    CHECK_FALSE(folded({.5, 0, 0}));      // a neighbour of no area
+    CHECK_FALSE(folded({2, 0, 0}));       // a neighbour of no area beyond the edge's end
 }
 
 TEST_CASE("neighbours at a point are tested for what lies beyond it") {
     const auto cuts = [](const Vec3& c, const Vec3& d) {
         return cuts_itself({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, c, d}, {0, 1, 2}, {0, 3, 4});
     };
-    CHECK_FALSE(cuts({-1, 0, 0}, {0, -1, 0}));      // opposite, same plane
-    CHECK_FALSE(cuts({1, 0, 1}, {0, 1, 1}));        // leaves upward
+    CHECK_FALSE(cuts({-1, 0, 0}, {0, -1, 0})); // opposite, same plane
+    CHECK_FALSE(cuts({1, 0, 1}, {0, 1, 1}));   // leaves upward
     CHECK_FALSE(cuts({0, 0, 1}, {-1, -1, 1}));
     CHECK(cuts({1, 1, -1}, {1, 1, 1}));             // cuts through, across the far side
     CHECK(cuts({.2, .2, -.1}, {.2, .2, .1}));       // cuts through, its far side within
@@ -139,7 +140,8 @@ TEST_CASE("clean surfaces are clean, and a pushed-in tube is not") {
     CHECK(self_intersecting_pairs(body).empty());
     CHECK(self_intersecting_pairs(tube).empty());
     CHECK(intersecting_pairs(tube, body).empty());
-    for (Vec3& p : tube.points) p[0] += 0.05;
+    for (Vec3& p : tube.points)
+        p[0] += 0.05;
     CHECK(!intersecting_pairs(tube, body).empty());
     CHECK(intersecting_pairs(body, tube).size() == intersecting_pairs(tube, body).size());
 }

@@ -36,7 +36,8 @@ const std::map<std::string, Strings> doors = {
 Strings split(const std::string& path) {
     Strings parts;
     std::istringstream in(path);
-    for (std::string part; std::getline(in, part, '/');) parts.push_back(part);
+    for (std::string part; std::getline(in, part, '/');)
+        parts.push_back(part);
     return parts;
 }
 
@@ -56,7 +57,8 @@ std::string wrong_own_include(const std::string& file, const std::string& header
     const Strings from = split(file), to = split(header);
     const auto from_module = place_in(modules, from[0]), to_module = place_in(modules, to[0]);
     if (!from_module) return ""; // tests and benches may include everything
-    if (to.size() < 2 || !to_module) return "expected a path from the root of the project, beginning with a module";
+    if (to.size() < 2 || !to_module)
+        return "expected a path from the root of the project, beginning with a module";
     if (*to_module > *from_module) return "the module " + to[0] + " stands to the right of " + from[0];
     if (from[0] != "draping" || to[0] != "draping") return "";
     const auto from_room = room(from), to_room = room(to);
@@ -113,7 +115,8 @@ bool has_licence(const std::string& text) {
     std::string line;
     std::getline(in, line);
     if (line.rfind("#!", 0) == 0) std::getline(in, line);
-    return line == "// SPDX-License-Identifier: GPL-3.0-or-later" || line == "# SPDX-License-Identifier: GPL-3.0-or-later";
+    return line == "// SPDX-License-Identifier: GPL-3.0-or-later" ||
+           line == "# SPDX-License-Identifier: GPL-3.0-or-later";
 }
 
 std::string read(const fs::path& path) {
@@ -132,8 +135,8 @@ bool is_source(const fs::path& path) {
 
 /// Sources of the project, as paths from its root.
 Strings sources() {
-    static const Strings folders = {"geometry", "patterns", "sewing", "draping", "io", "src",
-                                    "tests", "bench", "cmake", "scripts", "docs", "examples"};
+    static const Strings folders = {"geometry", "patterns", "sewing", "draping", "io",   "src",
+                                    "tests",    "bench",    "cmake",  "scripts", "docs", "examples"};
     const fs::path root = TOILE_SOURCE_DIR;
     Strings found = {"CMakeLists.txt"};
     for (const std::string& folder : folders) {
@@ -150,7 +153,9 @@ Strings sources() {
 } // namespace
 
 TEST_CASE("the check of includes sees what it is meant to see") {
-    const auto wrong = [](const std::string& file, const std::string& line) { return !wrong_includes(file, line).empty(); };
+    const auto wrong = [](const std::string& file, const std::string& line) {
+        return !wrong_includes(file, line).empty();
+    };
     CHECK_FALSE(wrong("sewing/garment.h", "#include \"patterns/pattern.h\""));
     CHECK_FALSE(wrong("sewing/garment.cpp", "#include \"sewing/garment.h\""));
     CHECK(wrong("geometry/bvh.cpp", "#include \"sewing/garment.h\""));
@@ -178,13 +183,15 @@ TEST_CASE("modules include leftward only and heavy libraries stay behind their d
     REQUIRE(files.size() > 50);
     for (const std::string& file : files) {
         if (fs::path(file).extension() != ".h" && fs::path(file).extension() != ".cpp") continue;
-        for (const std::string& wrong : wrong_includes(file, read(fs::path(TOILE_SOURCE_DIR) / file))) FAIL_CHECK(wrong);
+        for (const std::string& wrong : wrong_includes(file, read(fs::path(TOILE_SOURCE_DIR) / file)))
+            FAIL_CHECK(wrong);
     }
 }
 
 TEST_CASE("every source file carries its licence line") {
     for (const std::string& file : sources()) {
-        INFO(file << " should begin with the line \"SPDX-License-Identifier: GPL-3.0-or-later\" as a comment");
+        INFO(
+            file << " should begin with the line \"SPDX-License-Identifier: GPL-3.0-or-later\" as a comment");
         CHECK(has_licence(read(fs::path(TOILE_SOURCE_DIR) / file)));
     }
 }

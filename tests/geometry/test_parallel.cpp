@@ -29,11 +29,13 @@ TEST_CASE("parallel_for covers every index once, in chunks of the size asked for
                 std::mutex guard;
                 std::set<std::pair<int, int>> chunks;
                 parallel_for(n, chunk, [&](int begin, int end) {
-                    for (int i = begin; i < end; ++i) ++seen[i];
+                    for (int i = begin; i < end; ++i)
+                        ++seen[i];
                     std::lock_guard lock(guard);
                     chunks.insert({begin, end});
                 });
-                for (auto& s : seen) CHECK(s == 1);
+                for (auto& s : seen)
+                    CHECK(s == 1);
                 REQUIRE(int(chunks.size()) == chunk_count(n, chunk));
                 for (auto [begin, end] : chunks) {
                     CHECK(begin % chunk == 0);
@@ -48,13 +50,15 @@ TEST_CASE("parallel_sum has the same bits for every number of threads") {
         set_threads(t);
         return parallel_sum(100000, 128, [](int begin, int end) {
             double s = 0;
-            for (int i = begin; i < end; ++i) s += std::sin(i) * std::exp(i % 37);
+            for (int i = begin; i < end; ++i)
+                s += std::sin(i) * std::exp(i % 37);
             return s;
         });
     };
     const double one = sum(1);
     REQUIRE(one != 0);
-    for (int t : {2, 3, 8}) CHECK(sum(t) == one);
+    for (int t : {2, 3, 8})
+        CHECK(sum(t) == one);
 }
 
 TEST_CASE("parallel_for uses several threads, may be nested and hands exceptions on") {
@@ -63,6 +67,9 @@ TEST_CASE("parallel_for uses several threads, may be nested and hands exceptions
     std::atomic<int> count = 0;
     parallel_for(8, 1, [&](int, int) { parallel_for(8, 1, [&](int, int) { ++count; }); });
     CHECK(count == 64);
-    CHECK_THROWS_AS(parallel_for(100, 1, [](int begin, int) { if (begin == 50) throw std::runtime_error("x"); }),
+    CHECK_THROWS_AS(parallel_for(100, 1,
+                                 [](int begin, int) {
+                                     if (begin == 50) throw std::runtime_error("x");
+                                 }),
                     std::runtime_error);
 }

@@ -28,7 +28,8 @@ double toi(Kind kind, const Motion& m, const ToiOptions& options) {
 
 double distance_at(Kind kind, const Motion& m, double t) {
     Four x = m.x;
-    for (int k = 0; k < 4; ++k) x[k] += t * m.dx[k];
+    for (int k = 0; k < 4; ++k)
+        x[k] += t * m.dx[k];
     return std::sqrt(kind == Kind::point_triangle ? nearest_point_triangle(x[0], x[1], x[2], x[3]).squared
                                                   : nearest_edge_edge(x[0], x[1], x[2], x[3]).squared);
 }
@@ -47,7 +48,9 @@ struct Known {
 
 const Four rest = {Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)};
 
-Four with_point(const Vec3& p) { return {p, rest[1], rest[2], rest[3]}; }
+Four with_point(const Vec3& p) {
+    return {p, rest[1], rest[2], rest[3]};
+}
 
 // The point falls on a triangle at rest, or edge b falls on edge a at rest, from height 1 to -1 in unit time,
 // unless said otherwise: contact at 1/2.
@@ -58,31 +61,58 @@ const std::vector<Known> known = {
     {"touches at the end", Kind::point_triangle, with_point({.25, .25, 1}), with_point({.25, .25, 0}), 1},
     {"touches at the start", Kind::point_triangle, with_point({.25, .25, 0}), with_point({.25, .25, 1}), 0},
     // In the plane all the time; from x = -1 to 1/2 it meets the side x = 0 after two thirds.
-    {"slides in, in the plane", Kind::point_triangle, with_point({-1, .25, 0}), with_point({.5, .25, 0}), 2. / 3},
+    {"slides in, in the plane", Kind::point_triangle, with_point({-1, .25, 0}), with_point({.5, .25, 0}),
+     2. / 3},
     {"slides past, in the plane", Kind::point_triangle, with_point({-1, 2, 0}), with_point({1, 2, 0}), -1},
     // Corner c rises to 2 t; the face above (1/4, 1/2) is at z = t, the point at 1 - t.
-    {"meets a rising face", Kind::point_triangle, with_point({.25, .5, 1}),
-     {Vec3(.25, .5, 0), rest[1], rest[2], Vec3(0, 1, 2)}, .5},
-    // y = 3/4 - t/2; face at 8 t y = 6 t - 4 t^2, point at 1 + 2 t: their difference 1 - 4 t + 4 t^2 = (1 - 2 t)^2.
-    {"grazes the face", Kind::point_triangle, with_point({.125, .75, 1}),
-     {Vec3(.125, .25, 3), rest[1], rest[2], Vec3(0, 1, 8)}, .5},
-    {"edges cross", Kind::edge_edge, {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, -1, 1), Vec3(0, 1, 1)},
-     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, -1, -1), Vec3(0, 1, -1)}, .5},
-    {"parallel edges collide", Kind::edge_edge, {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(2, 0, 1)},
-     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, -1), Vec3(2, 0, -1)}, .5},
-    {"parallel edges touch end to end", Kind::edge_edge,
+    {"meets a rising face",
+     Kind::point_triangle,
+     with_point({.25, .5, 1}),
+     {Vec3(.25, .5, 0), rest[1], rest[2], Vec3(0, 1, 2)},
+     .5},
+    // y = 3/4 - t/2; face at 8 t y = 6 t - 4 t^2, point at 1 + 2 t: their difference 1 - 4 t + 4 t^2 = (1 - 2
+    // t)^2.
+    {"grazes the face",
+     Kind::point_triangle,
+     with_point({.125, .75, 1}),
+     {Vec3(.125, .25, 3), rest[1], rest[2], Vec3(0, 1, 8)},
+     .5},
+    {"edges cross",
+     Kind::edge_edge,
+     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, -1, 1), Vec3(0, 1, 1)},
+     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, -1, -1), Vec3(0, 1, -1)},
+     .5},
+    {"parallel edges collide",
+     Kind::edge_edge,
+     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(2, 0, 1)},
+     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, -1), Vec3(2, 0, -1)},
+     .5},
+    {"parallel edges touch end to end",
+     Kind::edge_edge,
      {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(1, 0, 1), Vec3(2, 0, 1)},
-     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(1, 0, -1), Vec3(2, 0, -1)}, .5},
-    {"parallel edges pass beside each other", Kind::edge_edge,
+     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(1, 0, -1), Vec3(2, 0, -1)},
+     .5},
+    {"parallel edges pass beside each other",
+     Kind::edge_edge,
      {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(1.5, 0, 1), Vec3(2, 0, 1)},
-     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(1.5, 0, -1), Vec3(2, 0, -1)}, -1},
-    {"end meets end", Kind::edge_edge, {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(1, 0, 1), Vec3(1, 1, 2)},
-     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(1, 0, -1), Vec3(1, 1, 0)}, .5},
-    {"an edge of no length", Kind::edge_edge, {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, 1)},
-     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, -1), Vec3(0, 0, -1)}, .5},
+     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(1.5, 0, -1), Vec3(2, 0, -1)},
+     -1},
+    {"end meets end",
+     Kind::edge_edge,
+     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(1, 0, 1), Vec3(1, 1, 2)},
+     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(1, 0, -1), Vec3(1, 1, 0)},
+     .5},
+    {"an edge of no length",
+     Kind::edge_edge,
+     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(0, 0, 1)},
+     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, 0, -1), Vec3(0, 0, -1)},
+     .5},
     // Edge b goes from (0, -1, 1)-(0, 1, 1) to (0, -1, 1)-(0, 1, -3): at y = 0 its height is 1 - 2 t.
-    {"an edge tilts through", Kind::edge_edge, {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, -1, 1), Vec3(0, 1, 1)},
-     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, -1, 1), Vec3(0, 1, -3)}, .5},
+    {"an edge tilts through",
+     Kind::edge_edge,
+     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, -1, 1), Vec3(0, 1, 1)},
+     {Vec3(-1, 0, 0), Vec3(1, 0, 0), Vec3(0, -1, 1), Vec3(0, 1, -3)},
+     .5},
 };
 
 void check_against_exact(const std::string& name, Kind kind, const Motion& m, bool hit, double exact) {
@@ -138,7 +168,8 @@ TEST_CASE("the distance kept is the one asked for, all the way, and no more than
             const double t = toi(kind, m, options);
             REQUIRE(t > 0);
             REQUIRE(t <= 1);
-            for (int i = 0; i <= 64; ++i) CHECK(distance_at(kind, m, t * i / 64) >= kept - 1e-15);
+            for (int i = 0; i <= 64; ++i)
+                CHECK(distance_at(kind, m, t * i / 64) >= kept - 1e-15);
             if (t == 1) continue;
             ++stopped;
             const double above = distance_at(kind, m, t) - kept;
@@ -151,9 +182,11 @@ TEST_CASE("the distance kept is the one asked for, all the way, and no more than
 TEST_CASE("a gap of a micrometre far from the origin is neither crossed nor a reason to stop") {
     const Vec3 o(1.4, 1.7, -1.1);
     const Four x0 = {o + Vec3(.002, .002, 1e-6), o, o + Vec3(.01, 0, 0), o + Vec3(0, .01, 0)};
-    const auto moved = [&](const Vec3& d) { return Motion{x0, {d, Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0)}}; };
-    CHECK(time_of_impact_point_triangle(moved({.004, .001, 0}), {}) == 1);       // slides along
-    CHECK(time_of_impact_point_triangle(moved({0, 0, 1e-3}), {}) == 1);          // leaves
+    const auto moved = [&](const Vec3& d) {
+        return Motion{x0, {d, Vec3(0, 0, 0), Vec3(0, 0, 0), Vec3(0, 0, 0)}};
+    };
+    CHECK(time_of_impact_point_triangle(moved({.004, .001, 0}), {}) == 1); // slides along
+    CHECK(time_of_impact_point_triangle(moved({0, 0, 1e-3}), {}) == 1);    // leaves
     CHECK(time_of_impact_point_triangle(moved({0, 0, -1e-3}), {}) == Approx(9e-4).epsilon(0.01));
     CHECK(time_of_impact_point_triangle(moved({0, 0, -1e-3}), {0.1, 0.5e-6}) == Approx(4.5e-4).epsilon(0.06));
 }
@@ -161,14 +194,16 @@ TEST_CASE("a gap of a micrometre far from the origin is neither crossed nor a re
 TEST_CASE("no motion, common motion, a start below the distance to keep, and motions that are no numbers") {
     test::Random random(9);
     Motion m = random_motion(random, 1, 0, Vec3(0, 0, 0));
-    for (Vec3& d : m.dx) d.setZero();
+    for (Vec3& d : m.dx)
+        d.setZero();
     for (Kind kind : {Kind::point_triangle, Kind::edge_edge}) {
         CHECK(toi(kind, m, {}) == 1);
         const double start = distance_at(kind, m, 0);
         CHECK(toi(kind, m, {0.1, start * 1.001}) == 0);
         CHECK(toi(kind, m, {0.1, start * 0.999}) == 1);
         Motion common = m;
-        for (Vec3& d : common.dx) d = Vec3(100, -7, 3);
+        for (Vec3& d : common.dx)
+            d = Vec3(100, -7, 3);
         CHECK(toi(kind, common, {}) == 1);
         common.dx[2][1] = std::numeric_limits<double>::quiet_NaN();
         CHECK(toi(kind, common, {}) == 0);

@@ -34,8 +34,8 @@ inline TriMesh ellipsoid(const Vec3& half, int around, int along) {
     return m;
 }
 
-/// Open tube about the y axis, y from 0 to `height`, whose radius waves by `wave`; 2 * around * along triangles,
-/// outside counter-clockwise. Point j * around + i is at height j / along.
+/// Open tube about the y axis, y from 0 to `height`, whose radius waves by `wave`; 2 * around * along
+/// triangles, outside counter-clockwise. Point j * around + i is at height j / along.
 inline TriMesh tube(double radius, double height, int around, int along, double wave = 0) {
     TriMesh m;
     for (int j = 0; j <= along; ++j)
@@ -57,7 +57,8 @@ inline TriMesh tube(double radius, double height, int around, int along, double 
 inline TriMesh grid(int nx, int ny, double size, double z = 0) {
     TriMesh m;
     for (int j = 0; j <= ny; ++j)
-        for (int i = 0; i <= nx; ++i) m.points.push_back({i * size, j * size, z});
+        for (int i = 0; i <= nx; ++i)
+            m.points.push_back({i * size, j * size, z});
     const auto at = [&](int j, int i) { return j * (nx + 1) + i; };
     for (int j = 0; j < ny; ++j)
         for (int i = 0; i < nx; ++i) {

@@ -175,7 +175,7 @@ std::pair<double, double> nearest_on_edge(const Edge& edge, const Vec2& p) {
         if (t <= 0) return (edge.start - p).norm();
         return (sample(edge, 0, t, 1).back() - p).norm();
     };
-    while (high - low > 1e-7) { // the distance is unimodal so near its minimum
+    while (high - low > 1e-12) { // the distance is unimodal so near its minimum
         const double third = (high - low) / 3;
         if (distance(low + third) < distance(high - third))
             high -= third;
@@ -349,9 +349,9 @@ struct Demand {
     std::vector<int> least; // per level
 };
 
-/// Squared logarithm of spacing over target, summed over levels, each counting half of the next finer one. A level
-/// off by more than a factor of 1.5 costs much more, unless it has a single segment already: meshes adapt to a
-/// little, but not to a border twice as fine as their inside.
+/// Squared logarithm of spacing over target, summed over levels, each counting half of the next finer one. A
+/// level off by more than a factor of 1.5 costs much more, unless it has a single segment already: meshes
+/// adapt to a little, but not to a border twice as fine as their inside.
 double misfit(double segments, int base, int halvings, int levels) {
     double sum = 0, weight = 1, wanted = segments;
     for (int level = levels - 1; level >= 0; --level) {

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "patterns/panel_mesh.h"
 
+#include "patterns/plane.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 namespace toile {
 namespace {
-
-double cross(const Vec2& a, const Vec2& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
 
 /// p relative to the line a b: 0 within rounding.
 int side(const Vec2& a, const Vec2& b, const Vec2& p) {
@@ -80,11 +78,6 @@ Lattice fit_lattice(const PanelBorder& border, double spacing) {
         break;
     }
     return lattice;
-}
-
-double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
-    const double s = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-    return (a + s * (b - a) - p).norm();
 }
 
 /// Lattice points inside the outline and at least `off` from every segment.

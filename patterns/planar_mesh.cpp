@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "patterns/planar_mesh.h"
 
+#include "patterns/plane.h"
+
 #include <algorithm>
 #include <cmath>
 #include <queue>
@@ -15,9 +17,6 @@ int previous(int k) {
     return k == 0 ? 2 : k - 1;
 }
 
-double cross(const Vec2& a, const Vec2& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
 double doubled_area(const Vec2& a, const Vec2& b, const Vec2& c) {
     return cross(b - a, c - a);
 }
@@ -225,11 +224,6 @@ int walk(const PlanarMesh& mesh, int t, const Vec2& p) {
     return -1;
 }
 
-double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
-    const double s = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-    return (a + s * (b - a) - p).norm();
-}
-
 /// Distance from p, inside triangle t, to the fixed edges that would become neighbours of a point there.
 double room(const PlanarMesh& mesh, int t, const Vec2& p) {
     double nearest = 1e300;
@@ -280,20 +274,20 @@ void move_point(PlanarMesh& mesh, int point, const Vec2& to, const std::vector<i
     mesh.points[point] = from;
 }
 
-/// Centroid of the Voronoi cell of an inner point, cells being cut off at fixed edges.
-Vec2 cell_centroid(const PlanarMesh& mesh, int point, const std::vector<int>& around, const SizeAt& size) {
+/// Where an inner point lies best for given neighbours: the mean of the circumcentres around it, weighted by
+/// area.
+Vec2 mean_circumcentre(const PlanarMesh& mesh, const std::vector<int>& around, const SizeAt& size) {
     Vec2 sum = Vec2::Zero();
     double total = 0;
     for (int t : around) {
         const Triangle& v = mesh.triangles[t];
         const Vec2 &a = mesh.points[v[0]], &b = mesh.points[v[1]], &c = mesh.points[v[2]];
-        const Vec2 middle = (a + b + c) / 3;
         double weight = doubled_area(a, b, c);
-        if (size) weight /= std::pow(size(middle), 4);
+        if (size)
+            weight /= std::pow(size((a + b + c) / 3), 4); // spacing goes with the fourth root of density
         sum += weight * circumcentre(a, b, c);
         total += weight;
     }
-    (void)point;
     return sum / total;
 }
 
@@ -341,8 +335,8 @@ double worst_around(PlanarMesh& mesh, int point) {
     return worst_around(mesh, point, mesh.points[point], around);
 }
 
-/// Flips the edge between a triangle with three border points and its neighbour's inner point, and moves that point
-/// to suit; undone unless all angles around it stay blunter than `cosine`.
+/// Flips the edge between a triangle with three border points and its neighbour's inner point, and moves that
+/// point to suit; undone unless all angles around it stay blunter than `cosine`.
 void open_ears(PlanarMesh& mesh, double cosine) {
     std::vector<int> around;
     for (int t = 0; t < int(mesh.triangles.size()); ++t)
@@ -413,7 +407,7 @@ void smooth(PlanarMesh& mesh, const SizeAt& size, int sweeps) {
     for (int sweep = 0; sweep < sweeps; ++sweep) {
         for (int p = mesh.border_points; p < int(mesh.points.size()); ++p) {
             star(mesh, p, around);
-            move_point(mesh, p, cell_centroid(mesh, p, around, size), around);
+            move_point(mesh, p, mean_circumcentre(mesh, around, size), around);
         }
         restore_delaunay(mesh);
     }

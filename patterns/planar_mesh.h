@@ -35,8 +35,11 @@ PlanarMesh delaunay(const std::vector<Vec2>& border, const std::vector<std::arra
 /// `limit` times the wanted edge; none nearer to a fixed edge than half the wanted edge.
 void refine(PlanarMesh& mesh, const SizeAt& size, double limit);
 
-/// Sweeps that move every inner point to the centroid of its Voronoi cell (Lloyd), weighted for graded sizes,
-/// and restore the Delaunay property by flips. Never turns a triangle over.
+/// Sweeps that move every inner point to the mean circumcentre of its triangles, weighted by area (and for
+/// graded sizes by density), and restore the Delaunay property by flips. Like Lloyd's sweeps, but the energy
+/// is that of the triangulation instead of the Voronoi cells, which gives better angles in as many sweeps.
+/// Never turns a triangle over. Chen, Holst: Efficient mesh optimization schemes based on optimal Delaunay
+/// triangulations, 2011.
 void smooth(PlanarMesh& mesh, const SizeAt& size, int sweeps);
 
 /// Gives corners whose triangle has all three points on the border an inner point where the angles allow it

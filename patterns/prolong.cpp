@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "patterns/prolong.h"
 
+#include "patterns/plane.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace toile {
 namespace {
-
-double cross(const Vec2& a, const Vec2& b) {
-    return a.x() * b.y() - a.y() * b.x();
-}
 
 /// Triangles of a panel, found by the square cell that a point lies in.
 struct Cells {
@@ -53,14 +51,11 @@ Cells make_cells(const FlatLevel& level, const std::vector<int>& triangles) {
     return cells;
 }
 
-double squared_distance(const FlatLevel& level, int t, const Vec2& p) {
+double distance_to_triangle(const FlatLevel& level, int t, const Vec2& p) {
     double nearest = 1e300;
-    for (int k = 0; k < 3; ++k) {
-        const Vec2 &a = level.points[level.triangles[t][k]],
-                   &b = level.points[level.triangles[t][(k + 1) % 3]];
-        const double s = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-        nearest = std::min(nearest, (a + s * (b - a) - p).squaredNorm());
-    }
+    for (int k = 0; k < 3; ++k)
+        nearest = std::min(nearest, distance_to_segment(p, level.points[level.triangles[t][k]],
+                                                        level.points[level.triangles[t][(k + 1) % 3]]));
     return nearest;
 }
 
@@ -92,7 +87,7 @@ std::vector<Interpolation> interpolate(const FlatLevel& coarse, int panel, const
         if (home < 0) { // beyond a curved border's chord: rare
             double best = 1e300;
             for (int t : triangles) {
-                const double d = squared_distance(coarse, t, p);
+                const double d = distance_to_triangle(coarse, t, p);
                 if (d < best) best = d, home = t;
             }
         }

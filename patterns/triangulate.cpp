@@ -4,10 +4,12 @@
 #include "geometry/parallel.h"
 #include "patterns/border_plan.h"
 #include "patterns/curve.h"
+#include "patterns/open_cuts.h"
 #include "patterns/panel_mesh.h"
 #include "patterns/prolong.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <stdexcept>
@@ -20,6 +22,7 @@ struct LevelBorders {
     double edge_length = 0;
     std::vector<PanelBorder> panels;
     std::vector<std::vector<int>> of_interval; ///< points of each interval from t0 to t1, within its panel
+    std::vector<std::vector<int>> right_of;    ///< the same, but of a cut's right side once it is open
 };
 
 std::vector<Vec2> points_at(const BorderPlan& plan, int interval, int level) {
@@ -328,6 +331,48 @@ std::vector<PlanarMesh> mesh_panels(const Pattern& pattern, const LevelBorders& 
     return meshes;
 }
 
+/// Opens inner lines of kind cut, and names the points of every interval anew: an outline that a cut divides
+/// has two points there.
+void open_panel(const Pattern& pattern, const BorderPlan& plan, int panel, PlanarMesh& mesh,
+                LevelBorders& borders) {
+    std::vector<std::array<int, 2>> cuts;
+    const auto each_interval = [&](auto&& visit) {
+        for (int k = plan.first_track[panel]; k < plan.first_track[panel + 1]; ++k)
+            for (int c = 0; c + 1 < int(plan.tracks[k].cuts.size()); ++c)
+                visit(plan.tracks[k], plan.tracks[k].first_interval + c);
+    };
+    each_interval([&](const BorderTrack& track, int i) {
+        if (track.kind != BorderKind::line ||
+            pattern.panels[panel].lines[track.loop].kind != InnerLineKind::cut)
+            return;
+        const std::vector<int>& ids = borders.of_interval[i];
+        for (std::size_t k = 0; k + 1 < ids.size(); ++k)
+            cuts.push_back({ids[k], ids[k + 1]});
+    });
+    if (cuts.empty()) return;
+    const std::vector<int> original = open_cuts(mesh, cuts);
+    std::map<std::array<int, 2>, std::array<int, 2>> now; // directed fixed edges before and after
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (int k = 0; k < 3; ++k)
+            if (mesh.fixed[t][k]) {
+                const int a = mesh.triangles[t][(k + 1) % 3], b = mesh.triangles[t][(k + 2) % 3];
+                now[{original[a], original[b]}] = {a, b};
+            }
+    each_interval([&](const BorderTrack&, int i) {
+        const std::vector<int> before = borders.of_interval[i];
+        for (std::size_t k = 0; k + 1 < before.size(); ++k) {
+            const auto left = now.find({before[k], before[k + 1]}),
+                       right = now.find({before[k + 1], before[k]});
+            const std::array<int, 2> l =
+                left != now.end() ? left->second : std::array{right->second[1], right->second[0]};
+            const std::array<int, 2> r =
+                right != now.end() ? std::array{right->second[1], right->second[0]} : l;
+            std::copy(l.begin(), l.end(), borders.of_interval[i].begin() + k);
+            std::copy(r.begin(), r.end(), borders.right_of[i].begin() + k);
+        }
+    });
+}
+
 FlatLevel assemble(const Pattern& pattern, const BorderPlan& plan, const LevelBorders& borders,
                    const std::vector<PlanarMesh>& meshes) {
     FlatLevel level;
@@ -388,24 +433,45 @@ std::vector<Interpolation> prolong(const BorderPlan& plan, int level, const Leve
     for (std::size_t i = 0; i < plan.intervals.size(); ++i) {
         const int p = plan.tracks[plan.intervals[i].track].panel;
         const int fine_first = first_point(fine, p), coarse_first = first_point(coarse, p);
-        const std::vector<int>&to = fine_borders.of_interval[i], &from = coarse_borders.of_interval[i];
         const int step =
             plan.count(plan.intervals[i].group, level + 1) / plan.count(plan.intervals[i].group, level);
-        for (int k = 0; k < int(to.size()); ++k) {
-            const int a = coarse_first + from[k / step],
-                      b = coarse_first + from[std::min(k / step + 1, int(from.size()) - 1)];
-            if (k % step == 0)
-                out[fine_first + to[k]] = {{a, a, a}, {1, 0, 0}};
-            else
-                out[fine_first + to[k]] = {{a, b, b}, {0.5, 0.5, 0}};
-        }
+        const auto along = [&](const std::vector<int>& to, const std::vector<int>& from) {
+            for (int k = 0; k < int(to.size()); ++k) {
+                const int a = coarse_first + from[k / step];
+                const int b = coarse_first + from[std::min(k / step + 1, int(from.size()) - 1)];
+                if (k % step == 0)
+                    out[fine_first + to[k]] = {{a, a, a}, {1, 0, 0}};
+                else
+                    out[fine_first + to[k]] = {{a, b, b}, {0.5, 0.5, 0}};
+            }
+        };
+        along(fine_borders.right_of[i], coarse_borders.right_of[i]);
+        along(fine_borders.of_interval[i], coarse_borders.of_interval[i]);
     }
     return out;
+}
+
+void refuse_senseless(const Pattern& pattern, const TriangulateOptions& options) {
+    if (!(options.edge_length > 1e-4 && options.edge_length < 100))
+        throw std::invalid_argument("edge length " + std::to_string(options.edge_length) +
+                                    " m is out of range, expected 0.0001 to 100 m");
+    if (options.levels < 1 || options.levels > 8 || options.smoothing < 0)
+        throw std::invalid_argument("triangulation takes 1 to 8 levels and 0 or more smoothing sweeps");
+    double area = 0;
+    for (const Panel& panel : pattern.panels)
+        area += std::abs(signed_area(panel.outline));
+    const double triangles = area / (0.433 * options.edge_length * options.edge_length);
+    if (!(triangles < 2e7))
+        throw std::invalid_argument("an edge length of " + std::to_string(options.edge_length) +
+                                    " m would cut " + std::to_string(area) + " m2 of cloth into " +
+                                    std::to_string(triangles / 1e6) +
+                                    " million triangles, expected at most 20 million");
 }
 
 } // namespace
 
 FlatPattern triangulate(const Pattern& pattern, const TriangulateOptions& options) {
+    refuse_senseless(pattern, options);
     BorderPlan plan = plan_borders(pattern, options);
     LeastCounts least(plan.levels, std::vector<int>(plan.groups.size(), 1));
     std::vector<LevelBorders> borders(plan.levels);
@@ -419,9 +485,12 @@ FlatPattern triangulate(const Pattern& pattern, const TriangulateOptions& option
         }
     }
     FlatPattern flat;
-    for (const LevelBorders& b : borders) {
+    for (LevelBorders& b : borders) {
         std::vector<PlanarMesh> meshes = mesh_panels(pattern, b, options);
         split_chords(plan, b, meshes);
+        b.right_of = b.of_interval;
+        for (int p = 0; p < int(meshes.size()); ++p)
+            open_panel(pattern, plan, p, meshes[p], b);
         flat.levels.push_back(assemble(pattern, plan, b, meshes));
     }
     for (int l = 0; l + 1 < plan.levels; ++l)

@@ -34,7 +34,8 @@ struct FlatLevel {
     std::vector<std::vector<std::array<int, 2>>> stitches;
     /// The border segments of seam s in the order of its sides, a dart's tip included.
     std::vector<std::vector<SewnSegment>> sewn;
-    /// Vertices along inner line l of panel p: lines[p][l].
+    /// Vertices along inner line l of panel p: lines[p][l]; of a cut, those on its left: the cloth on its
+    /// right has vertices of its own.
     std::vector<std::vector<std::vector<int>>> lines;
 };
 
@@ -52,7 +53,8 @@ struct FlatPattern {
     std::vector<std::vector<Interpolation>> prolongation; ///< [l][v]: vertex v of level l + 1 from level l
 };
 
-/// Throws std::runtime_error naming the panel when an outline cannot be triangulated (see check()).
+/// Throws std::runtime_error naming the panel when an outline cannot be triangulated (see check()), and
+/// std::invalid_argument when an option is out of range or asks for more than 20 million triangles.
 FlatPattern triangulate(const Pattern& pattern, const TriangulateOptions& options);
 
 } // namespace toile

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// The few formulas of plane geometry that triangulation needs everywhere.
+
+#include "geometry/types.h"
+
+#include <algorithm>
+
+namespace toile {
+
+/// Positive when b is counter-clockwise of a.
+inline double cross(const Vec2& a, const Vec2& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
+
+inline double distance_to_segment(const Vec2& p, const Vec2& a, const Vec2& b) {
+    const double s = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+    return (a + s * (b - a) - p).norm();
+}
+
+} // namespace toile

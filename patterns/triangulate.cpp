@@ -234,6 +234,7 @@ Sets closed_nodes(const BorderPlan& plan, const LevelBorders& borders) {
 /// A coarse border may close onto itself: a cuff of two segments becomes a flat pair of edges. Asks for more
 /// segments where a segment's ends would become one node, or two segments one edge that no seam joins.
 bool keep_open(const BorderPlan& plan, const LevelBorders& borders, int level, LeastCounts& least) {
+    const int enough = 4; // segments; what still coincides then is drawn so
     Sets nodes = closed_nodes(plan, borders);
     const std::vector<int> offset = border_offsets(borders);
     std::vector<int> first_segment(plan.intervals.size(), 0); // all segments of all intervals, numbered
@@ -253,8 +254,7 @@ bool keep_open(const BorderPlan& plan, const LevelBorders& borders, int level, L
     auto finer = [&](int interval) {
         const int group = plan.intervals[interval].group;
         const int n = plan.count(group, level);
-        if (n >= plan.count(group, plan.levels - 1) || least[level][group] > n)
-            return; // as fine as the finest: leave it
+        if (n >= enough || least[level][group] > n) return;
         least[level][group] = n + 1;
         changed = true;
     };

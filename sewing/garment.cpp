@@ -16,7 +16,7 @@ constexpr double eased = 0.02; // a seam whose sides differ by more is eased or 
 
 /// Panel coordinates to (weft, warp): the warp turns to y.
 Mat2 to_grain(double grain) {
-    if (grain == EIGEN_PI / 2) return Mat2::Identity(); // exactly, not within rounding
+    if (grain == double(EIGEN_PI / 2)) return Mat2::Identity(); // exactly, not within rounding
     Mat2 m;
     m << std::sin(grain), -std::cos(grain), std::cos(grain), std::sin(grain);
     return m;

@@ -27,9 +27,14 @@ inline std::vector<Triangle> delaunay(std::vector<Vec2> points) {
     Vec2 low = points[0], high = points[0];
     for (const Vec2& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
     const Vec2 centre = (low + high) / 2;
-    // Bulged a little, so that straight borders hold no three points on a line.
-    for (Vec2& p : points) p -= 1e-3 * (p - centre).squaredNorm() / (high - low).squaredNorm() * (p - centre);
-    const double far = 20 * (high - low).norm();
+    // Bulged and shaken a little, so that no three points of a straight border lie on a line and no four on a circle.
+    Random random(1);
+    const double size = (high - low).norm();
+    for (Vec2& p : points) {
+        p -= 1e-3 * (p - centre).squaredNorm() / (size * size) * (p - centre);
+        p += 1e-7 * size * random.vec3().head<2>();
+    }
+    const double far = 20 * size;
     for (const Vec2& d : {Vec2(-1, -0.9), Vec2(1, -1.1), Vec2(0.01, 1)}) points.push_back(centre + far * d);
 
     const auto in_circle = [&](const Triangle& t, const Vec2& p) {

@@ -30,8 +30,8 @@ struct Stencil {
     }
 };
 
-// Derivative across an edge, at its middle, out of the first of its triangles: exact, and from the edge's own two
-// triangles alone.
+// Derivative across an edge, at its middle, out of the first of its triangles: exact, and from the edge's own
+// two triangles alone.
 struct EdgeSlope {
     Stencil exact, compact;
 };
@@ -40,7 +40,8 @@ struct EdgeFrame {
     Vec2 middle, along, out;
     double length;
 
-    /// Monomials (1, s, n, ss, sn, nn) in units of the edge's length, s along the edge and n out of the triangle.
+    /// Monomials (1, s, n, ss, sn, nn) in units of the edge's length, s along the edge and n out of the
+    /// triangle.
     Eigen::Matrix<double, 6, 1> monomials(const Vec2& at) const {
         const double s = (at - middle).dot(along) / length, n = (at - middle).dot(out) / length;
         Eigen::Matrix<double, 6, 1> m;
@@ -59,17 +60,20 @@ EdgeFrame frame_of(const Vec2& a, const Vec2& b, const Vec2& inside) {
     return frame;
 }
 
-constexpr double ring_weight = 0.05;  // how much rather a slope uses the edge's own triangles than those around them
-constexpr double largest_weight = 4;  // times 1 / length; on a regular mesh 0.58
+constexpr double ring_weight =
+    0.05; // how much rather a slope uses the edge's own triangles than those around them
+constexpr double largest_weight = 4; // times 1 / length; on a regular mesh 0.58
 constexpr int most_rings = 3;
 
-// The weights of least (weighted) size that are exact on all quadratics. False when the points do not allow it.
+// The weights of least (weighted) size that are exact on all quadratics. False when the points do not allow
+// it.
 bool exact_weights(const EdgeFrame& frame, const std::vector<RestPoint>& points, Eigen::VectorXd& weights) {
     const int n = int(points.size());
     Eigen::MatrixXd conditions(6, n);
     Eigen::VectorXd share = Eigen::VectorXd::Constant(n, ring_weight);
     share.head(4).setOnes();
-    for (int i = 0; i < n; ++i) conditions.col(i) = frame.monomials(points[i].at) * share[i];
+    for (int i = 0; i < n; ++i)
+        conditions.col(i) = frame.monomials(points[i].at) * share[i];
     Eigen::Matrix<double, 6, 1> slope = Eigen::Matrix<double, 6, 1>::Zero();
     slope[2] = 1 / frame.length;
     Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solve;
@@ -117,7 +121,8 @@ EdgeSlope inner_slope(const Garment& garment, int t, int k) {
     for (int ring = 0; ring < most_rings; ++ring) {
         unfold_ring(garment, unfolding);
         if (!exact_weights(frame, points, weights)) continue;
-        for (std::size_t i = 0; i < points.size(); ++i) slope.exact.add(points[i].node, weights[i]);
+        for (std::size_t i = 0; i < points.size(); ++i)
+            slope.exact.add(points[i].node, weights[i]);
         return slope;
     }
     slope.exact = slope.compact; // a strip too narrow to show the curvature across it
@@ -135,11 +140,15 @@ Stencil border_slope(const Garment& garment, int t, int k, const Patch& patch) {
     const auto gradient = barycentric_gradients(garment.rest.edges[t]);
     const Vec2 out = -gradient[k].normalized();
     Stencil slope;
-    for (int i = 0; i < 3; ++i) slope.add(patch.nodes[i], gradient[i].dot(out));
-    // The patch is the interpolant plus sum_m -q_m / 2 l_i l_j; in the middle of edge k, l_k = 0 and the others 1/2.
+    for (int i = 0; i < 3; ++i)
+        slope.add(patch.nodes[i], gradient[i].dot(out));
+    // The patch is the interpolant plus sum_m -q_m / 2 l_i l_j; in the middle of edge k, l_k = 0 and the
+    // others 1/2.
     for (int m = 0; m < 3; ++m) {
-        const Vec2 bump = m == k ? Vec2((gradient[(m + 1) % 3] + gradient[(m + 2) % 3]) / 2) : Vec2(gradient[k] / 2);
-        for (int a = 0; a < patch.count; ++a) slope.add(patch.nodes[a], -0.5 * patch.curve(m, a) * bump.dot(out));
+        const Vec2 bump =
+            m == k ? Vec2((gradient[(m + 1) % 3] + gradient[(m + 2) % 3]) / 2) : Vec2(gradient[k] / 2);
+        for (int a = 0; a < patch.count; ++a)
+            slope.add(patch.nodes[a], -0.5 * patch.curve(m, a) * bump.dot(out));
     }
     return slope;
 }
@@ -160,8 +169,9 @@ std::vector<EdgeSlope> inner_slopes(const Garment& garment) {
     return slopes;
 }
 
-// Second derivatives (uu, vv, uv) of Morley's triangle from its corners (columns 0-2) and from the slopes out of its
-// edges (columns 3-5): the mean of the gradient's derivative, by Gauss, from the gradient at mid-edges.
+// Second derivatives (uu, vv, uv) of Morley's triangle from its corners (columns 0-2) and from the slopes out
+// of its edges (columns 3-5): the mean of the gradient's derivative, by Gauss, from the gradient at
+// mid-edges.
 Eigen::Matrix<double, 3, 6> morley(const Mat2& edges) {
     const auto gradient = barycentric_gradients(edges);
     Eigen::Matrix<double, 3, 6> b = Eigen::Matrix<double, 3, 6>::Zero();
@@ -173,7 +183,8 @@ Eigen::Matrix<double, 3, 6> morley(const Mat2& edges) {
         const std::array<Vec2, 3> corner{Vec2(0, 0), Vec2(edges.col(0)), Vec2(edges.col(1))};
         const Vec2 line = corner[j] - corner[i], s = line / line.squaredNorm();
         b.col(3 + k) = two_over_h * Vec3(n.x() * n.x(), n.y() * n.y(), n.x() * n.y());
-        const Vec3 mixed = two_over_h * Vec3(n.x() * s.x(), n.y() * s.y(), 0.5 * (n.x() * s.y() + n.y() * s.x()));
+        const Vec3 mixed =
+            two_over_h * Vec3(n.x() * s.x(), n.y() * s.y(), 0.5 * (n.x() * s.y() + n.y() * s.x()));
         b.col(j) += mixed;
         b.col(i) -= mixed;
     }
@@ -187,12 +198,15 @@ Mat3 bend_moduli(const Fabric& fabric) {
     d(0, 1) = d(1, 0) = fabric.bend_poisson * std::sqrt(fabric.bend_warp * fabric.bend_weft);
     d(2, 2) = 4 * fabric.bend_twist;
     if (!(d(0, 0) > 0 && d(1, 1) > 0 && d(2, 2) > 0 && std::abs(fabric.bend_poisson) < 1))
-        throw std::invalid_argument("fabric \"" + fabric.name +
-                                    "\": bend_warp, bend_weft and bend_twist must be positive and bend_poisson below 1");
+        throw std::invalid_argument(
+            "fabric \"" + fabric.name +
+            "\": bend_warp, bend_weft and bend_twist must be positive and bend_poisson below 1");
     return d;
 }
 
-double rest_area(const Mat2& edges) { return 0.5 * std::abs(edges.determinant()); }
+double rest_area(const Mat2& edges) {
+    return 0.5 * std::abs(edges.determinant());
+}
 
 // The three second derivatives of triangle t as rows over `nodes`, which receives the nodes used.
 Rows exact_rows(const Garment& garment, int t, const std::vector<EdgeSlope>& slopes, const Patch& patch,
@@ -220,15 +234,16 @@ Rows exact_rows(const Garment& garment, int t, const std::vector<EdgeSlope>& slo
     return rows;
 }
 
-BendElement compact_element(const Garment& garment, int t, const std::vector<EdgeSlope>& slopes, const Mat3& moduli) {
+BendElement compact_element(const Garment& garment, int t, const std::vector<EdgeSlope>& slopes,
+                            const Mat3& moduli) {
     const Mat2& edges = garment.rest.edges[t];
     const Eigen::Matrix<double, 3, 6> b = morley(edges);
     const Triangle corners = garment.nodes(t);
     BendElement element;
     element.count = 3;
     std::copy(corners.begin(), corners.end(), element.nodes.begin());
-    // Energy over (second derivatives of what is known) with the slopes of border edges left free: they take the value
-    // of least energy, which is a constraint on the moduli.
+    // Energy over (second derivatives of what is known) with the slopes of border edges left free: they take
+    // the value of least energy, which is a constraint on the moduli.
     Eigen::Matrix<double, 3, BendElement::max_nodes> rows = Eigen::Matrix<double, 3, 6>::Zero();
     rows.leftCols<3>() = b.leftCols<3>();
     Mat3 left = moduli;
@@ -237,7 +252,8 @@ BendElement compact_element(const Garment& garment, int t, const std::vector<Edg
         if (neighbour(garment, t, k) < 0) {
             const Vec3 free = b.col(3 + k), moment = left * free;
             const double size = free.dot(moment);
-            if (size > 1e-12 * moduli.trace() * free.squaredNorm()) left -= moment * moment.transpose() / size;
+            if (size > 1e-12 * moduli.trace() * free.squaredNorm())
+                left -= moment * moment.transpose() / size;
             continue;
         }
         const Stencil& slope = slopes[e].compact;
@@ -262,7 +278,8 @@ Eigen::SparseMatrix<double> assemble(const Garment& garment, const std::vector<E
     parallel_for(n, 256, [&](int begin, int end) {
         for (int t = begin; t < end; ++t) {
             const Rows rows = exact_rows(garment, t, slopes, patches[t], nodes[t]);
-            blocks[t] = rest_area(garment.rest.edges[t]) * rows.transpose() * moduli[garment.panel_of_triangle[t]] * rows;
+            blocks[t] = rest_area(garment.rest.edges[t]) * rows.transpose() *
+                        moduli[garment.panel_of_triangle[t]] * rows;
         }
     });
     std::vector<Eigen::Triplet<double>> entries;
@@ -275,7 +292,8 @@ Eigen::SparseMatrix<double> assemble(const Garment& garment, const std::vector<E
     return stiffness;
 }
 
-// Row i of K x, from differences: the rows of K sum to zero, and far from the origin only differences are small.
+// Row i of K x, from differences: the rows of K sum to zero, and far from the origin only differences are
+// small.
 Vec3 force_at(const Eigen::SparseMatrix<double>& stiffness, const Points& x, int i) {
     Vec3 sum = Vec3::Zero();
     for (Eigen::SparseMatrix<double>::InnerIterator entry(stiffness, i); entry; ++entry)
@@ -287,7 +305,8 @@ Vec3 force_at(const Eigen::SparseMatrix<double>& stiffness, const Points& x, int
 
 Bending make_bending(const Garment& garment, const std::vector<Fabric>& fabrics) {
     std::vector<Mat3> moduli;
-    for (const Fabric& fabric : fabrics) moduli.push_back(bend_moduli(fabric));
+    for (const Fabric& fabric : fabrics)
+        moduli.push_back(bend_moduli(fabric));
     const std::vector<EdgeSlope> slopes = inner_slopes(garment);
     Bending bending;
     bending.stiffness = assemble(garment, slopes, moduli);
@@ -300,14 +319,16 @@ Bending make_bending(const Garment& garment, const std::vector<Fabric>& fabrics)
 double bend_value(const Bending& bending, const Points& x) {
     return 0.5 * parallel_sum(int(x.size()), 512, [&](int begin, int end) {
                double sum = 0;
-               for (int i = begin; i < end; ++i) sum += (x[i] - x[0]).dot(force_at(bending.stiffness, x, i));
+               for (int i = begin; i < end; ++i)
+                   sum += (x[i] - x[0]).dot(force_at(bending.stiffness, x, i));
                return sum;
            });
 }
 
 void bend_gradient(const Bending& bending, const Points& x, Points& gradient) {
     parallel_for(int(x.size()), 512, [&](int begin, int end) {
-        for (int i = begin; i < end; ++i) gradient[i] += force_at(bending.stiffness, x, i);
+        for (int i = begin; i < end; ++i)
+            gradient[i] += force_at(bending.stiffness, x, i);
     });
 }
 

@@ -15,26 +15,30 @@ struct BendElement {
     static constexpr int max_nodes = 6;
     int count = 0;
     std::array<int, max_nodes> nodes{};
-    Eigen::Matrix<double, max_nodes, max_nodes> stiffness; ///< N/m; the Hessian is stiffness (x) I3; zero from `count` on
+    Eigen::Matrix<double, max_nodes, max_nodes>
+        stiffness; ///< N/m; the Hessian is stiffness (x) I3; zero from `count` on
 };
 
 /// E = 1/2 sum_ij K_ij x_i . x_j, that is per area
 ///     1/2 (bend_warp |X_vv|^2 + bend_weft |X_uu|^2 + 2 c X_uu . X_vv + 4 bend_twist |X_uv|^2),
-/// with X(u, v) the surface over (weft, warp) and c = bend_poisson sqrt(bend_warp bend_weft); an isotropic plate has
-/// bend_twist = (1 - nu) D / 2. Second derivatives of positions, not angles: on cloth that keeps its lengths both
-/// agree, and the energy is quadratic in positions, convex and rigid-motion invariant, with a constant Hessian K (x) I3.
+/// with X(u, v) the surface over (weft, warp) and c = bend_poisson sqrt(bend_warp bend_weft); an isotropic
+/// plate has bend_twist = (1 - nu) D / 2. Second derivatives of positions, not angles: on cloth that keeps
+/// its lengths both agree, and the energy is quadratic in positions, convex and rigid-motion invariant, with
+/// a constant Hessian K (x) I3.
 ///
-/// Second derivatives are those of Morley's triangle (quadratic; values at corners, slopes across mid-edges). The slope
-/// is one vector per edge, seen by both triangles: linear in the nodes around the edge and exact on quadratics. One
-/// value per edge makes the element consistent, exactness makes it convergent, on any mesh; see docs/bending.md.
+/// Second derivatives are those of Morley's triangle (quadratic; values at corners, slopes across mid-edges).
+/// The slope is one vector per edge, seen by both triangles: linear in the nodes around the edge and exact on
+/// quadratics. One value per edge makes the element consistent, exactness makes it convergent, on any mesh;
+/// see docs/bending.md.
 struct Bending {
     Eigen::SparseMatrix<double> stiffness; ///< K: nodes x nodes, both halves, N/m
-    /// The same with slopes from the two triangles at the edge alone: up to 15 % stiffer on rough meshes, with half the
-    /// entries. Meant for what is factored; the energy is `stiffness`.
+    /// The same with slopes from the two triangles at the edge alone: up to 15 % stiffer on rough meshes,
+    /// with half the entries. Meant for what is factored; the energy is `stiffness`.
     std::vector<BendElement> compact;
 };
 
-/// `fabrics` has one entry per panel. Throws std::invalid_argument for a fabric whose bending is not positive definite.
+/// `fabrics` has one entry per panel. Throws std::invalid_argument for a fabric whose bending is not positive
+/// definite.
 Bending make_bending(const Garment& garment, const std::vector<Fabric>& fabrics);
 
 double bend_value(const Bending& bending, const Points& x);

@@ -11,8 +11,8 @@ namespace toile {
 
 namespace {
 
-// Weighted products of barycentric coordinates; on a regular mesh the smallest singular value is 0.42. Below the first
-// bound more nodes are added, below the second a curvature counts as invisible.
+// Weighted products of barycentric coordinates; on a regular mesh the smallest singular value is 0.42. Below
+// the first bound more nodes are added, below the second a curvature counts as invisible.
 constexpr double well_conditioned = 0.1;
 constexpr double invisible = 1e-3;
 
@@ -23,14 +23,15 @@ Vec3 barycentric(const Mat2& inverse_edges, const Vec2& at) {
     return {1 - l.x() - l.y(), l.x(), l.y()};
 }
 
-// The quadratic that vanishes at the corners is sum_k c_k l_i l_j (i, j the ends of edge k), and its second derivative
-// along edge k, times length squared, is -2 c_k. Fits the other points, weighted by 1 / distance^4 since the error of
-// a smooth surface grows with distance cubed. Returns the smallest singular value.
+// The quadratic that vanishes at the corners is sum_k c_k l_i l_j (i, j the ends of edge k), and its second
+// derivative along edge k, times length squared, is -2 c_k. Fits the other points, weighted by 1 / distance^4
+// since the error of a smooth surface grows with distance cubed. Returns the smallest singular value.
 double fit_curve(const std::vector<RestPoint>& points, int count, const Mat2& edges, Curve& curve) {
     const Mat2 inverse = edges.inverse();
     const Vec2 centre = (edges.col(0) + edges.col(1)) / 3;
     const double size = std::abs(edges.determinant());
-    Eigen::Matrix<double, Patch::max_nodes - 3, 3> products = Eigen::Matrix<double, Patch::max_nodes - 3, 3>::Zero();
+    Eigen::Matrix<double, Patch::max_nodes - 3, 3> products =
+        Eigen::Matrix<double, Patch::max_nodes - 3, 3>::Zero();
     Eigen::Matrix<double, Patch::max_nodes - 3, Patch::max_nodes> deviation;
     deviation.setZero();
     for (int a = 3; a < count; ++a) {
@@ -75,7 +76,8 @@ Patch make_patch(const Garment& garment, int t) {
         patch.count = 3;
         patch.curve.setZero();
     }
-    for (int a = 0; a < patch.count; ++a) patch.nodes[a] = unfolding.points[a].node;
+    for (int a = 0; a < patch.count; ++a)
+        patch.nodes[a] = unfolding.points[a].node;
     return patch;
 }
 
@@ -84,14 +86,16 @@ Patch make_patch(const Garment& garment, int t) {
 std::vector<Patch> make_patches(const Garment& garment) {
     std::vector<Patch> patches(garment.triangles.size());
     parallel_for(int(patches.size()), 256, [&](int begin, int end) {
-        for (int t = begin; t < end; ++t) patches[t] = make_patch(garment, t);
+        for (int t = begin; t < end; ++t)
+            patches[t] = make_patch(garment, t);
     });
     return patches;
 }
 
 Mat3 curvature_of_edges(const Mat2& edges) {
     const Mat2 inverse = edges.inverse();
-    const std::array<Vec2, 3> slope{Vec2(-inverse.row(0) - inverse.row(1)), Vec2(inverse.row(0)), Vec2(inverse.row(1))};
+    const std::array<Vec2, 3> slope{Vec2(-inverse.row(0) - inverse.row(1)), Vec2(inverse.row(0)),
+                                    Vec2(inverse.row(1))};
     Mat3 result;
     for (int k = 0; k < 3; ++k) {
         const Vec2 &a = slope[(k + 1) % 3], &b = slope[(k + 2) % 3];

@@ -12,17 +12,18 @@ std::array<Vec2, 3> rest_corners(const Garment& garment, int t) {
     return {Vec2(0, 0), Vec2(e.col(0)), Vec2(e.col(1))};
 }
 
-// A new point unless the node is there already: round a dart's tip a node is met twice, in two places, and the
-// nearer one is kept.
+// A new point unless the node is there already: round a dart's tip a node is met twice, in two places, and
+// the nearer one is kept.
 void add_point(Unfolding& unfolding, const RestPoint& point) {
     for (const RestPoint& p : unfolding.points)
         if (p.node == point.node) return;
     unfolding.points.push_back(point);
 }
 
-// Where `corner` of a triangle lies when its edge (corner + 1, corner + 2) is laid on that from a to b, on the side
-// away from `inside`. The two edges differ in length where a seam is eased.
-Vec2 lay(const std::array<Vec2, 3>& rest, int corner, bool reversed, const Vec2& a, const Vec2& b, const Vec2& inside) {
+// Where `corner` of a triangle lies when its edge (corner + 1, corner + 2) is laid on that from a to b, on
+// the side away from `inside`. The two edges differ in length where a seam is eased.
+Vec2 lay(const std::array<Vec2, 3>& rest, int corner, bool reversed, const Vec2& a, const Vec2& b,
+         const Vec2& inside) {
     Vec2 p = rest[(corner + 1) % 3], q = rest[(corner + 2) % 3];
     if (reversed) std::swap(p, q);
     const Vec2 along = q - p, to = rest[corner] - p;
@@ -71,8 +72,8 @@ void unfold_over(const Garment& garment, Unfolding& unfolding, int i, int k) {
     const bool reversed = nodes[(corner + 1) % 3] != a.node;
     Unfolding::Placed placed;
     placed.triangle = t;
-    placed.corners[corner] = {nodes[corner],
-                              lay(rest_corners(garment, t), corner, reversed, a.at, b.at, from.corners[k].at)};
+    placed.corners[corner] = {
+        nodes[corner], lay(rest_corners(garment, t), corner, reversed, a.at, b.at, from.corners[k].at)};
     placed.corners[(corner + 1) % 3] = reversed ? b : a;
     placed.corners[(corner + 2) % 3] = reversed ? a : b;
     add_point(unfolding, placed.corners[corner]);
@@ -82,7 +83,8 @@ void unfold_over(const Garment& garment, Unfolding& unfolding, int i, int k) {
 void unfold_ring(const Garment& garment, Unfolding& unfolding) {
     const std::size_t first = unfolding.ring, last = unfolding.triangles.size();
     for (std::size_t i = first; i < last; ++i)
-        for (int k = 0; k < 3; ++k) unfold_over(garment, unfolding, int(i), k);
+        for (int k = 0; k < 3; ++k)
+            unfold_over(garment, unfolding, int(i), k);
     unfolding.ring = last;
 }
 

@@ -19,18 +19,20 @@ struct Unfolding {
         std::array<RestPoint, 3> corners;
     };
     std::vector<Placed> triangles;
-    std::vector<RestPoint> points; ///< every node once, where it was met first; the first triangle's corners first
-    std::size_t ring = 0;          ///< triangles from here on are the outermost ring
+    std::vector<RestPoint>
+        points;           ///< every node once, where it was met first; the first triangle's corners first
+    std::size_t ring = 0; ///< triangles from here on are the outermost ring
 };
 
 /// Triangle t alone, its first corner at the origin.
 Unfolding start_unfolding(const Garment& garment, int t);
 
-/// The triangle that shares the edge opposite corner k of t; -1 at a border (an edge with one triangle, or with
-/// more than two).
+/// The triangle that shares the edge opposite corner k of t; -1 at a border (an edge with one triangle, or
+/// with more than two).
 int neighbour(const Garment& garment, int t, int k);
 
-/// Adds the neighbour of placed triangle i over the edge opposite corner k, if there is one and it is not placed.
+/// Adds the neighbour of placed triangle i over the edge opposite corner k, if there is one and it is not
+/// placed.
 void unfold_over(const Garment& garment, Unfolding& unfolding, int i, int k);
 
 /// Adds all neighbours of the outermost ring; they become the outermost ring.

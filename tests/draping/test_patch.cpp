@@ -15,14 +15,16 @@ namespace {
 // q_k of every patch, for nodes at x.
 Mat3 edge_turning(const Patch& patch, const Points& x) {
     Mat3 q = Mat3::Zero(); // row k
-    for (int a = 0; a < patch.count; ++a) q += patch.curve.col(a) * x[patch.nodes[a]].transpose();
+    for (int a = 0; a < patch.count; ++a)
+        q += patch.curve.col(a) * x[patch.nodes[a]].transpose();
     return q;
 }
 
 // Largest error of q against that of the quadratic 1/2 p^T H p in mesh coordinates, over the exact largest q.
 double worst_error(const Garment& garment, const FlatMesh& mesh, const Mat2& hessian) {
     Points x;
-    for (const Vec2& p : mesh.points) x.push_back({p.x(), p.y(), 0.5 * p.dot(hessian * p) + 0.3 * p.x() - p.y() + 2});
+    for (const Vec2& p : mesh.points)
+        x.push_back({p.x(), p.y(), 0.5 * p.dot(hessian * p) + 0.3 * p.x() - p.y() + 2});
     const std::vector<Patch> patches = make_patches(garment);
     double error = 0, scale = 0;
     for (std::size_t t = 0; t < patches.size(); ++t) {
@@ -51,28 +53,32 @@ const std::vector<Mat2> quadratics = [] {
 TEST_CASE("a patch is exact on quadratics, at borders too", "[patch]") {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         const FlatMesh mesh = jittered_rectangle(1, 0.25, 0.05, 0.3, seed);
-        for (const Mat2& h : quadratics) CHECK(worst_error(garment_of(mesh, 0.4), mesh, h) < 1e-10);
+        for (const Mat2& h : quadratics)
+            CHECK(worst_error(garment_of(mesh, 0.4), mesh, h) < 1e-10);
     }
 }
 
 TEST_CASE("a patch is exact on quadratics of structured meshes, whose nodes lie on lines", "[patch]") {
     FlatMesh mesh;
     for (int j = 0; j <= 4; ++j)
-        for (int i = 0; i <= 6; ++i) mesh.points.push_back({0.1 * i, 0.1 * j});
+        for (int i = 0; i <= 6; ++i)
+            mesh.points.push_back({0.1 * i, 0.1 * j});
     for (int j = 0; j < 4; ++j)
         for (int i = 0; i < 6; ++i) {
             const int a = 7 * j + i;
             mesh.triangles.push_back({a, a + 1, a + 8});
             mesh.triangles.push_back({a, a + 8, a + 7});
         }
-    for (const Mat2& h : quadratics) CHECK(worst_error(garment_of(mesh), mesh, h) < 1e-10);
+    for (const Mat2& h : quadratics)
+        CHECK(worst_error(garment_of(mesh), mesh, h) < 1e-10);
 }
 
 TEST_CASE("a patch sees across a seam between different grains", "[patch]") {
     const FlatMesh mesh = jittered_rectangle(1, 0.5, 0.07, 0.3, 3);
     const Garment sewn = cut_and_sewn(mesh, 0.45, 0.2, 1.3);
     REQUIRE(sewn.uv.size() > std::size_t(sewn.node_count));
-    for (const Mat2& h : quadratics) CHECK(worst_error(sewn, mesh, h) < 1e-10);
+    for (const Mat2& h : quadratics)
+        CHECK(worst_error(sewn, mesh, h) < 1e-10);
 }
 
 TEST_CASE("a patch does not see rigid motions and affine maps", "[patch]") {
@@ -123,7 +129,8 @@ TEST_CASE("cloth too small to show a curvature has none", "[patch]") {
     // A strip one triangle wide: bent along it is seen, bent across it is not.
     FlatMesh strip;
     for (int i = 0; i <= 8; ++i)
-        for (int j = 0; j <= 1; ++j) strip.points.push_back({1.0 * i, 1.0 * j});
+        for (int j = 0; j <= 1; ++j)
+            strip.points.push_back({1.0 * i, 1.0 * j});
     for (int i = 0; i < 8; ++i) {
         strip.triangles.push_back({2 * i, 2 * i + 2, 2 * i + 3});
         strip.triangles.push_back({2 * i, 2 * i + 3, 2 * i + 1});

@@ -17,17 +17,21 @@ struct FlatMesh {
     std::vector<Triangle> triangles;
 };
 
-inline double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+inline double cross(const Vec2& a, const Vec2& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
 
-/// Delaunay triangulation of points in a convex outline by Bowyer and Watson, with every circumcircle asked: for some
-/// thousand points.
+/// Delaunay triangulation of points in a convex outline by Bowyer and Watson, with every circumcircle asked:
+/// for some thousand points.
 inline std::vector<Triangle> delaunay(std::vector<Vec2> points) {
     const std::vector<Vec2> given = points;
     const int n = int(points.size());
     Vec2 low = points[0], high = points[0];
-    for (const Vec2& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    for (const Vec2& p : points)
+        low = low.cwiseMin(p), high = high.cwiseMax(p);
     const Vec2 centre = (low + high) / 2;
-    // Bulged and shaken a little, so that no three points of a straight border lie on a line and no four on a circle.
+    // Bulged and shaken a little, so that no three points of a straight border lie on a line and no four on a
+    // circle.
     Random random(1);
     const double size = (high - low).norm();
     for (Vec2& p : points) {
@@ -35,11 +39,13 @@ inline std::vector<Triangle> delaunay(std::vector<Vec2> points) {
         p += 1e-7 * size * random.vec3().head<2>();
     }
     const double far = 20 * size;
-    for (const Vec2& d : {Vec2(-1, -0.9), Vec2(1, -1.1), Vec2(0.01, 1)}) points.push_back(centre + far * d);
+    for (const Vec2& d : {Vec2(-1, -0.9), Vec2(1, -1.1), Vec2(0.01, 1)})
+        points.push_back(centre + far * d);
 
     const auto in_circle = [&](const Triangle& t, const Vec2& p) {
         const Vec2 a = points[t[0]] - p, b = points[t[1]] - p, c = points[t[2]] - p;
-        return a.squaredNorm() * cross(b, c) + b.squaredNorm() * cross(c, a) + c.squaredNorm() * cross(a, b) > 0;
+        return a.squaredNorm() * cross(b, c) + b.squaredNorm() * cross(c, a) + c.squaredNorm() * cross(a, b) >
+               0;
     };
     std::vector<Triangle> triangles{{n, n + 1, n + 2}}, kept;
     for (int i = 0; i < n; ++i) {
@@ -50,7 +56,8 @@ inline std::vector<Triangle> delaunay(std::vector<Vec2> points) {
                 kept.push_back(t);
                 continue;
             }
-            for (int k = 0; k < 3; ++k) hole[{t[k], t[(k + 1) % 3]}] = true;
+            for (int k = 0; k < 3; ++k)
+                hole[{t[k], t[(k + 1) % 3]}] = true;
         }
         for (const auto& [edge, inside] : hole)
             if (!hole.count({edge[1], edge[0]})) kept.push_back({edge[0], edge[1], i});
@@ -65,16 +72,22 @@ inline std::vector<Triangle> delaunay(std::vector<Vec2> points) {
     return result;
 }
 
-/// Rectangle [0, length] x [0, width]: border samples about `edge` apart, inside a hexagonal lattice moved by up to
-/// `jitter` edges in each coordinate (but not closer than 0.45 edges to the border).
-inline FlatMesh jittered_rectangle(double length, double width, double edge, double jitter, std::uint64_t seed) {
+/// Rectangle [0, length] x [0, width]: border samples about `edge` apart, inside a hexagonal lattice moved by
+/// up to `jitter` edges in each coordinate (but not closer than 0.45 edges to the border).
+inline FlatMesh jittered_rectangle(double length, double width, double edge, double jitter,
+                                   std::uint64_t seed) {
     Random random(seed);
     FlatMesh mesh;
-    const int along = std::max(1, int(std::lround(length / edge))), up = std::max(1, int(std::lround(width / edge)));
-    for (int i = 0; i < along; ++i) mesh.points.push_back({length * i / along, 0});
-    for (int j = 0; j < up; ++j) mesh.points.push_back({length, width * j / up});
-    for (int i = along; i > 0; --i) mesh.points.push_back({length * i / along, width});
-    for (int j = up; j > 0; --j) mesh.points.push_back({0, width * j / up});
+    const int along = std::max(1, int(std::lround(length / edge))),
+              up = std::max(1, int(std::lround(width / edge)));
+    for (int i = 0; i < along; ++i)
+        mesh.points.push_back({length * i / along, 0});
+    for (int j = 0; j < up; ++j)
+        mesh.points.push_back({length, width * j / up});
+    for (int i = along; i > 0; --i)
+        mesh.points.push_back({length * i / along, width});
+    for (int j = up; j > 0; --j)
+        mesh.points.push_back({0, width * j / up});
     const int rows = std::max(1, int(std::lround(width / (0.8660254 * edge))));
     const double margin = 0.45 * edge;
     for (int j = 1; j < rows; ++j)
@@ -82,7 +95,8 @@ inline FlatMesh jittered_rectangle(double length, double width, double edge, dou
             if (i == 0 && j % 2 == 0) continue;
             const double dx = edge * random.in(-jitter, jitter), dy = edge * random.in(-jitter, jitter);
             const double x = length * (i + 0.5 * (j % 2)) / along + dx, y = width * j / rows + dy;
-            mesh.points.push_back({std::clamp(x, margin, length - margin), std::clamp(y, margin, width - margin)});
+            mesh.points.push_back(
+                {std::clamp(x, margin, length - margin), std::clamp(y, margin, width - margin)});
         }
     mesh.triangles = delaunay(mesh.points);
     return mesh;
@@ -93,7 +107,8 @@ inline Garment garment_of(const FlatMesh& mesh, double grain = 0) {
     Garment garment;
     Mat2 turn;
     turn << std::cos(grain), -std::sin(grain), std::sin(grain), std::cos(grain);
-    for (const Vec2& p : mesh.points) garment.uv.push_back(turn * p);
+    for (const Vec2& p : mesh.points)
+        garment.uv.push_back(turn * p);
     garment.triangles = mesh.triangles;
     garment.panel_of_vertex.assign(mesh.points.size(), 0);
     garment.panel_of_triangle.assign(mesh.triangles.size(), 0);
@@ -101,7 +116,8 @@ inline Garment garment_of(const FlatMesh& mesh, double grain = 0) {
     garment.panel_fabrics = {""};
     garment.panel_layers = {0};
     garment.node_count = int(mesh.points.size());
-    for (int i = 0; i < garment.node_count; ++i) garment.node_of_vertex.push_back(i);
+    for (int i = 0; i < garment.node_count; ++i)
+        garment.node_of_vertex.push_back(i);
     garment.edges = make_edges(mesh.triangles, garment.node_count);
     garment.rest.angles.assign(garment.edges.size(), 0);
     garment.seam_edge.assign(garment.edges.size(), false);
@@ -114,8 +130,8 @@ inline Garment garment_of(const FlatMesh& mesh, double grain = 0) {
     return garment;
 }
 
-/// The same cloth cut along the line x = at (moved to vertices: a triangle belongs to the panel of its centroid), the
-/// two panels with grains of their own, and sewn again: nodes shared, vertices not.
+/// The same cloth cut along the line x = at (moved to vertices: a triangle belongs to the panel of its
+/// centroid), the two panels with grains of their own, and sewn again: nodes shared, vertices not.
 inline Garment cut_and_sewn(const FlatMesh& mesh, double at, double grain_left, double grain_right) {
     Garment garment = garment_of(mesh, grain_left);
     Mat2 turn;
@@ -146,7 +162,8 @@ inline Garment cut_and_sewn(const FlatMesh& mesh, double at, double grain_left, 
 /// Node positions of a flat garment lying in the plane z = 0 as it was meshed.
 inline Points flat_points(const FlatMesh& mesh) {
     Points points;
-    for (const Vec2& p : mesh.points) points.push_back({p.x(), p.y(), 0});
+    for (const Vec2& p : mesh.points)
+        points.push_back({p.x(), p.y(), 0});
     return points;
 }
 

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/energy/stretch.h"
+
+#include "geometry/parallel.h"
+
+#include <Eigen/Dense>
+
+#include <stdexcept>
+
+namespace toile {
+
+namespace {
+
+constexpr int chunk = 256;
+
+// Edge k runs from corner k + 1 to corner k + 2.
+int edge_start(int k) {
+    return (k + 1) % 3;
+}
+int edge_end(int k) {
+    return (k + 2) % 3;
+}
+
+Mat3 moduli(const Fabric& f) {
+    const double minor = f.poisson * f.stretch_weft / f.stretch_warp;
+    const double scale = 1 / (1 - f.poisson * minor);
+    if (!(f.stretch_warp > 0 && f.stretch_weft > 0 && f.shear > 0 && f.poisson >= 0 && scale > 0))
+        throw std::invalid_argument(
+            "fabric \"" + f.name +
+            "\": stretch_warp, stretch_weft and shear must be positive and poisson between 0 "
+            "and the root of stretch_warp / stretch_weft");
+    Mat3 c = Mat3::Zero();
+    c(0, 0) = scale * f.stretch_weft;
+    c(1, 1) = scale * f.stretch_warp;
+    c(0, 1) = c(1, 0) = scale * f.poisson * f.stretch_weft;
+    c(2, 2) = f.shear;
+    return c;
+}
+
+StretchElement make_element(const Mat2& rest, const Fabric& fabric, const Patch& patch) {
+    StretchElement element;
+    element.patch = patch;
+    element.area = 0.5 * std::abs(rest.determinant());
+    const std::array<Vec2, 3> corner{Vec2(0, 0), Vec2(rest.col(0)), Vec2(rest.col(1))};
+    Mat3 squares;
+    for (int k = 0; k < 3; ++k) {
+        const Vec2 e = corner[edge_end(k)] - corner[edge_start(k)];
+        element.length_squared[k] = e.squaredNorm();
+        squares.row(k) << e.x() * e.x(), e.y() * e.y(), e.x() * e.y();
+    }
+    element.to_strain = squares.inverse();
+    element.full = moduli(fabric);
+    element.weft = fabric.stretch_weft;
+    element.warp = fabric.stretch_warp;
+    element.compression = fabric.compression;
+    return element;
+}
+
+// Where the element is: edges, their turning, and what follows from their lengths.
+struct Shape {
+    std::array<Vec3, 3> edge, turning;
+    Vec3 strain;
+};
+
+Shape shape_of(const StretchElement& element, const Points& x) {
+    const Patch& patch = element.patch;
+    Shape shape;
+    Vec3 g;
+    for (int k = 0; k < 3; ++k) {
+        shape.edge[k] = x[patch.nodes[edge_end(k)]] - x[patch.nodes[edge_start(k)]];
+        shape.turning[k].setZero();
+    }
+    const Vec3& origin = x[patch.nodes[0]];
+    for (int a = 1; a < patch.count; ++a) {
+        const Vec3 to = x[patch.nodes[a]] - origin;
+        for (int k = 0; k < 3; ++k)
+            shape.turning[k] += patch.curve(k, a) * to;
+    }
+    for (int k = 0; k < 3; ++k)
+        g[k] = 0.5 * (shape.edge[k].squaredNorm() - element.length_squared[k]) +
+               shape.turning[k].squaredNorm() / 24;
+    shape.strain = element.to_strain * g;
+    return shape;
+}
+
+// Derivative of g_k by the position of patch node a.
+Vec3 length_gradient(const StretchElement& element, const Shape& shape, int k, int a) {
+    Vec3 gradient = element.patch.curve(k, a) / 12 * shape.turning[k];
+    if (a == edge_end(k)) gradient += shape.edge[k];
+    if (a == edge_start(k)) gradient -= shape.edge[k];
+    return gradient;
+}
+
+// The stress with its compressive principal part taken off.
+Vec3 tensile(const Vec3& stress) {
+    Mat2 s;
+    s << stress[0], stress[2], stress[2], stress[1];
+    const double mean = s.trace() / 2, radius = std::hypot((s(0, 0) - s(1, 1)) / 2, s(0, 1));
+    if (mean - radius >= 0) return stress;
+    if (mean + radius <= 0) return Vec3::Zero();
+    // Only the larger principal value, mean + radius, stays: times the projector on its direction.
+    const Mat2 kept = (mean + radius) / (2 * radius) * (s - (mean - radius) * Mat2::Identity());
+    return {kept(0, 0), kept(1, 1), kept(0, 1)};
+}
+
+void add_scalar(StretchHessian& hessian, int a, int b, double value) {
+    for (int i = 0; i < 3; ++i)
+        hessian(3 * a + i, 3 * b + i) += value;
+}
+
+} // namespace
+
+StretchResponse stretch_response(const StretchElement& element, const Vec3& strain) {
+    const double share = element.compression;
+    const Vec3 full = element.full * strain;
+    StretchResponse slack{0, Vec3::Zero(), Mat3::Zero()};
+    if (full[0] >= 0 && full[1] >= 0) return {0.5 * strain.dot(full), full, element.full};
+    const bool weft = full[1] < 0 && strain[0] > 0, warp = full[0] < 0 && strain[1] > 0;
+    if (weft) slack.tangent(0, 0) = element.weft;
+    if (warp) slack.tangent(1, 1) = element.warp;
+    slack.tangent(2, 2) = element.full(2, 2);
+    slack.stress = slack.tangent * strain;
+    return {0.5 * ((1 - share) * strain.dot(slack.stress) + share * strain.dot(full)),
+            (1 - share) * slack.stress + share * full, (1 - share) * slack.tangent + share * element.full};
+}
+
+std::vector<StretchElement> make_stretch(const Garment& garment, const std::vector<Fabric>& fabrics,
+                                         const StretchOptions& options) {
+    std::vector<Patch> patches;
+    if (options.arc_edges) patches = make_patches(garment);
+    std::vector<StretchElement> elements;
+    for (int t = 0; t < int(garment.triangles.size()); ++t) {
+        Patch patch;
+        if (options.arc_edges) {
+            patch = patches[t];
+        } else {
+            const Triangle nodes = garment.nodes(t);
+            patch.count = 3;
+            std::copy(nodes.begin(), nodes.end(), patch.nodes.begin());
+            patch.curve.setZero();
+        }
+        elements.push_back(make_element(garment.rest.edges[t], fabrics[garment.panel_of_triangle[t]], patch));
+    }
+    return elements;
+}
+
+Vec3 stretch_strain(const StretchElement& element, const Points& x) {
+    return shape_of(element, x).strain;
+}
+
+double stretch_value(const StretchElement& element, const Points& x) {
+    return element.area * stretch_response(element, stretch_strain(element, x)).energy;
+}
+
+void stretch_gradient(const StretchElement& element, const Points& x,
+                      std::array<Vec3, Patch::max_nodes>& gradient) {
+    const Shape shape = shape_of(element, x);
+    const Vec3 force =
+        element.area * element.to_strain.transpose() * stretch_response(element, shape.strain).stress;
+    for (int a = 0; a < element.patch.count; ++a) {
+        gradient[a].setZero();
+        for (int k = 0; k < 3; ++k)
+            gradient[a] += element.patch.curve(k, a) * force[k] / 12 * shape.turning[k];
+    }
+    for (int k = 0; k < 3; ++k) {
+        gradient[edge_end(k)] += force[k] * shape.edge[k];
+        gradient[edge_start(k)] -= force[k] * shape.edge[k];
+    }
+}
+
+void stretch_hessian(const StretchElement& element, const Points& x, HessianKind kind,
+                     StretchHessian& hessian) {
+    const Shape shape = shape_of(element, x);
+    const StretchResponse response = stretch_response(element, shape.strain);
+    const int m = element.patch.count;
+    const bool project = kind == HessianKind::projected;
+
+    Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3 * Patch::max_nodes> lengths(3, 3 * m);
+    for (int a = 0; a < m; ++a)
+        for (int k = 0; k < 3; ++k)
+            lengths.block<1, 3>(k, 3 * a) = length_gradient(element, shape, k, a).transpose();
+    const Mat3 tangent = element.area * element.to_strain.transpose() * response.tangent * element.to_strain;
+    hessian.noalias() = lengths.transpose() * (tangent * lengths);
+
+    const Vec3 chord =
+        element.area * element.to_strain.transpose() * (project ? tensile(response.stress) : response.stress);
+    for (int k = 0; k < 3; ++k) {
+        const int a = edge_start(k), b = edge_end(k);
+        add_scalar(hessian, a, a, chord[k]);
+        add_scalar(hessian, b, b, chord[k]);
+        add_scalar(hessian, a, b, -chord[k]);
+        add_scalar(hessian, b, a, -chord[k]);
+    }
+    Vec3 arc = element.area / 12 * element.to_strain.transpose() * response.stress;
+    if (project) arc = arc.cwiseMax(0);
+    const auto curve = element.patch.curve.leftCols(m);
+    for (int a = 0; a < m; ++a)
+        for (int b = 0; b < m; ++b)
+            add_scalar(hessian, a, b, curve.col(a).cwiseProduct(arc).dot(curve.col(b)));
+}
+
+double stretch_value(const std::vector<StretchElement>& elements, const Points& x) {
+    return parallel_sum(int(elements.size()), chunk, [&](int begin, int end) {
+        double sum = 0;
+        for (int t = begin; t < end; ++t)
+            sum += stretch_value(elements[t], x);
+        return sum;
+    });
+}
+
+void stretch_gradient(const std::vector<StretchElement>& elements, const Points& x, Points& gradient) {
+    std::vector<std::array<Vec3, Patch::max_nodes>> parts(elements.size());
+    parallel_for(int(elements.size()), chunk, [&](int begin, int end) {
+        for (int t = begin; t < end; ++t)
+            stretch_gradient(elements[t], x, parts[t]);
+    });
+    for (std::size_t t = 0; t < elements.size(); ++t)
+        for (int a = 0; a < elements[t].patch.count; ++a)
+            gradient[elements[t].patch.nodes[a]] += parts[t][a];
+}
+
+} // namespace toile

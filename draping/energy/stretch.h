@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// The membrane: orthotropic, slack under compression, not locked by bending.
+
+#include "draping/energy/patch.h"
+#include "draping/fabric/fabric.h"
+
+namespace toile {
+
+struct StretchOptions {
+    /// Take edges for arcs: 1/2 (|e|^2 - l^2) + |q|^2 / 24 with q the edge's turning times its length (see
+    /// Patch) is the mean Green strain of an arc times l^2, and zero to fourth order on every bend that keeps
+    /// lengths. With plain chords such a bend costs membrane energy k kappa^4 l^4, which locks meshes coarser
+    /// than 2.6 sqrt(R sqrt(12 D / k)).
+    bool arc_edges = true;
+};
+
+/// One triangle: constant Green strain (weft, warp, twice shear) from the lengths of its three edges;
+/// W per area = (1 - compression) W_slack + compression W_full, with W_full = 1/2 e C e and W_slack its
+/// minimum when warp and weft may each be shortened at will: a yarn that would be compressed carries nothing
+/// and the other answers as in a uniaxial test. Convex in strain, once continuously differentiable.
+struct StretchElement {
+    Patch patch;
+    Mat3 to_strain;            ///< strain = to_strain g, g_k = 1/2 (|e_k|^2 - l_k^2) + |q_k|^2 / 24, m^2
+    Vec3 length_squared;       ///< of the rest edges, m^2
+    double area = 0;           ///< m^2
+    Mat3 full;                 ///< C, N/m
+    double weft = 0, warp = 0; ///< uniaxial stiffness, N/m
+    double compression = 0;
+};
+
+/// Block of 3 patch.count rows and columns.
+using StretchHessian =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3 * Patch::max_nodes, 3 * Patch::max_nodes>;
+
+enum class HessianKind { exact, projected };
+
+/// `fabrics` has one entry per panel. Throws std::invalid_argument for a fabric whose stiffness is not
+/// positive definite.
+std::vector<StretchElement> make_stretch(const Garment& garment, const std::vector<Fabric>& fabrics,
+                                         const StretchOptions& options = {});
+
+/// Green strain (weft, warp, twice shear) of one triangle.
+Vec3 stretch_strain(const StretchElement& element, const Points& x);
+
+/// Energy per area and its derivatives by strain: stress (N/m) and tangent (N/m, positive semidefinite).
+struct StretchResponse {
+    double energy = 0;
+    Vec3 stress;
+    Mat3 tangent;
+};
+StretchResponse stretch_response(const StretchElement& element, const Vec3& strain);
+
+double stretch_value(const StretchElement& element, const Points& x);
+/// Gradient of one element by node of its patch.
+void stretch_gradient(const StretchElement& element, const Points& x,
+                      std::array<Vec3, Patch::max_nodes>& gradient);
+/// Exact, or positive semidefinite: the tangent part as it is, compressive stresses left out of the geometric
+/// part.
+void stretch_hessian(const StretchElement& element, const Points& x, HessianKind kind,
+                     StretchHessian& hessian);
+
+double stretch_value(const std::vector<StretchElement>& elements, const Points& x);
+/// Adds the gradient to `gradient`.
+void stretch_gradient(const std::vector<StretchElement>& elements, const Points& x, Points& gradient);
+
+} // namespace toile

@@ -90,7 +90,7 @@ inline std::vector<TestedState> tested_states(const FlatMesh& mesh) {
         return Vec3(1.04 * p.x() + 0.1 * p.y(), 1.03 * p.y(), 0) + r.vec3(2e-4);
     });
     add("compressed", [](const Vec2& p, Random& r) -> Vec3 {
-        return Vec3(0.9 * p.x() + 0.11 * p.y(), 0.95 * p.y(), 0) + r.vec3(2e-4);
+        return Vec3(0.9 * p.x() + 0.2 * p.y(), 0.95 * p.y(), 0) + r.vec3(2e-4);
     });
     add("wavy", [](const Vec2& p, Random& r) -> Vec3 {
         return Vec3(p.x(), p.y(), 0.01 * std::sin(30 * p.x() + 10 * p.y())) + r.vec3(1e-3);

@@ -13,6 +13,10 @@ namespace {
 
 constexpr int chunk = 256;
 
+// What an arc adds to its chord's strain tends to this. It leaves bends that the mesh resolves alone, and keeps
+// the chords of those it does not (a radius of an edge's length) from passing for cloth twice as long.
+constexpr double most_arc = 0.005;
+
 // Edge k runs from corner k + 1 to corner k + 2.
 int edge_start(int k) {
     return (k + 1) % 3;
@@ -59,6 +63,7 @@ StretchElement make_element(const Mat2& rest, const Fabric& fabric, const Patch&
 // Where the element is: edges, their turning, and what follows from their lengths.
 struct Shape {
     std::array<Vec3, 3> edge, turning;
+    std::array<double, 3> arc_slope, arc_bend; ///< derivatives of what an arc adds, by |q|^2 / 24
     Vec3 strain;
 };
 
@@ -76,16 +81,20 @@ Shape shape_of(const StretchElement& element, const Points& x) {
         for (int k = 0; k < 3; ++k)
             shape.turning[k] += patch.curve(k, a) * to;
     }
-    for (int k = 0; k < 3; ++k)
-        g[k] = 0.5 * (shape.edge[k].squaredNorm() - element.length_squared[k]) +
-               shape.turning[k].squaredNorm() / 24;
+    for (int k = 0; k < 3; ++k) {
+        const double arc = shape.turning[k].squaredNorm() / 24, most = most_arc * element.length_squared[k];
+        const double rest = most / (most + arc);
+        g[k] = 0.5 * (shape.edge[k].squaredNorm() - element.length_squared[k]) + arc * rest;
+        shape.arc_slope[k] = rest * rest;
+        shape.arc_bend[k] = -2 * rest * rest * rest / most;
+    }
     shape.strain = element.to_strain * g;
     return shape;
 }
 
 // Derivative of g_k by the position of patch node a.
 Vec3 length_gradient(const StretchElement& element, const Shape& shape, int k, int a) {
-    Vec3 gradient = element.patch.curve(k, a) / 12 * shape.turning[k];
+    Vec3 gradient = shape.arc_slope[k] * element.patch.curve(k, a) / 12 * shape.turning[k];
     if (a == edge_end(k)) gradient += shape.edge[k];
     if (a == edge_start(k)) gradient -= shape.edge[k];
     return gradient;
@@ -160,7 +169,7 @@ void stretch_gradient(const StretchElement& element, const Points& x,
     for (int a = 0; a < element.patch.count; ++a) {
         gradient[a].setZero();
         for (int k = 0; k < 3; ++k)
-            gradient[a] += element.patch.curve(k, a) * force[k] / 12 * shape.turning[k];
+            gradient[a] += shape.arc_slope[k] * element.patch.curve(k, a) * force[k] / 12 * shape.turning[k];
     }
     for (int k = 0; k < 3; ++k) {
         gradient[edge_end(k)] += force[k] * shape.edge[k];
@@ -191,12 +200,23 @@ void stretch_hessian(const StretchElement& element, const Points& x, HessianKind
         add_scalar(hessian, a, b, -chord[k]);
         add_scalar(hessian, b, a, -chord[k]);
     }
-    Vec3 arc = element.area / 12 * element.to_strain.transpose() * response.stress;
+    const Vec3 force = element.area * element.to_strain.transpose() * response.stress;
+    Vec3 arc = force / 12;
+    for (int k = 0; k < 3; ++k)
+        arc[k] *= shape.arc_slope[k];
     if (project) arc = arc.cwiseMax(0);
     const auto curve = element.patch.curve.leftCols(m);
     for (int a = 0; a < m; ++a)
         for (int b = 0; b < m; ++b)
             add_scalar(hessian, a, b, curve.col(a).cwiseProduct(arc).dot(curve.col(b)));
+    for (int k = 0; k < 3; ++k) {
+        const double bend = force[k] * shape.arc_bend[k] / 144;
+        if (project && bend < 0) continue;
+        const Mat3 outer = bend * shape.turning[k] * shape.turning[k].transpose();
+        for (int a = 0; a < m; ++a)
+            for (int b = 0; b < m; ++b)
+                hessian.block<3, 3>(3 * a, 3 * b) += curve(k, a) * curve(k, b) * outer;
+    }
 }
 
 double stretch_value(const std::vector<StretchElement>& elements, const Points& x) {

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// Sparse Cholesky of a BlockMatrix: CHOLMOD, supernodal, nested dissection on the graph of points.
+
+#include "draping/algebra/block_matrix.h"
+
+#include <memory>
+#include <string>
+
+namespace toile {
+
+class Cholesky {
+public:
+    Cholesky();
+    ~Cholesky();
+    Cholesky(Cholesky&&) noexcept;
+    Cholesky& operator=(Cholesky&&) noexcept;
+
+    /// Symbolic analysis for the pattern of `a`. With `keep_order`, the order of an earlier analysis of as many
+    /// points is used again: cheap, and good while only a few blocks (contacts) have come or gone.
+    void analyse(const BlockMatrix& a, bool keep_order = false);
+
+    /// Numeric factorisation of a matrix with the analysed pattern. False when it is not positive definite.
+    bool factorise(const BlockMatrix& a);
+
+    /// x = A^-1 b by the last factorisation, which must have succeeded.
+    void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// The BLAS at work. It always runs one thread, since its sums depend on their number.
+std::string blas_name();
+
+} // namespace toile

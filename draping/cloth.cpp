@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/cloth.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace toile {
+
+namespace {
+
+// The friction that is modelled stays a little below the limit, so that normal forces that still change by a few
+// per cent leave it within the limit.
+constexpr double friction_margin = 0.95;
+constexpr double limit_margin = 0.05; // a widened strain limit leaves this share of room
+constexpr int renew_every = 8;        // arrivals after which what is lagged is renewed in any case
+
+double rest_area(const Mat2& edges) { return 0.5 * std::abs(edges.determinant()); }
+
+} // namespace
+
+ContactCloth contact_cloth(const Garment& g) {
+    ContactCloth c;
+    c.triangles = node_triangles(g);
+    c.edges = g.edges.ends;
+    c.node_area.assign(g.node_count, 0.0);
+    c.node_reach.assign(g.node_count, std::numeric_limits<double>::infinity());
+    c.edge_length.assign(g.edges.size(), 0.0);
+    c.edge_area.assign(g.edges.size(), 0.0);
+    for (std::size_t t = 0; t < c.triangles.size(); ++t) {
+        const Mat2& r = g.rest.edges[t];
+        const double area = rest_area(r);
+        const double length[3] = {(r.col(1) - r.col(0)).norm(), r.col(1).norm(), r.col(0).norm()};
+        const double altitude = 2 * area / std::max({length[0], length[1], length[2]});
+        for (int k = 0; k < 3; ++k) {
+            const int node = c.triangles[t][k], edge = g.edges.of_triangle[t][k];
+            c.node_area[node] += area / 3;
+            c.node_reach[node] = std::min(c.node_reach[node], altitude);
+            c.edge_area[edge] += area / 3;
+            c.edge_length[edge] = std::max(c.edge_length[edge], length[k]);
+        }
+    }
+    // Nodes that stitches will merge count as one.
+    c.group.resize(g.node_count);
+    for (int i = 0; i < g.node_count; ++i) c.group[i] = i;
+    const auto root = [&](int i) {
+        while (c.group[i] != i) i = c.group[i];
+        return i;
+    };
+    for (const Stitch& s : g.stitches) {
+        if (s.r != 0) continue;
+        const int a = root(s.a), b = root(s.b[0]);
+        c.group[std::max(a, b)] = std::min(a, b);
+    }
+    for (int i = 0; i < g.node_count; ++i) c.group[i] = root(i);
+    return c;
+}
+
+std::vector<double> node_masses(const Garment& g, const PanelFabrics& fabrics) {
+    std::vector<double> mass(g.node_count, 0.0);
+    for (std::size_t t = 0; t < g.triangles.size(); ++t) {
+        const double m = fabrics[g.panel_of_triangle[t]].density * rest_area(g.rest.edges[t]) / 3;
+        for (int node : g.nodes(int(t))) mass[node] += m;
+    }
+    return mass;
+}
+
+ClothProblem::ClothProblem(const Garment& garment, const PanelFabrics& fabrics, const TriMesh& body,
+                           const ContactOptions& contact)
+    : sheet_(make_sheet(garment, fabrics)), contact_(contact_cloth(garment), body, contact),
+      node_mass_(node_masses(garment, fabrics)), pinned_(garment.node_count, 0) {
+    limits_.swap(sheet_.limits);
+    mass_.resize(3 * garment.node_count);
+    double sum = 0;
+    for (int i = 0; i < garment.node_count; ++i) {
+        mass_.segment<3>(3 * i).setConstant(node_mass_[i]);
+        sum += node_mass_[i];
+    }
+    least_weight_ = 0.1 * sum / garment.node_count;
+}
+
+void ClothProblem::rest_here(const Points& x, double coefficient) {
+    friction.coefficient = friction_margin * coefficient;
+    friction.place = x;
+    friction.normal.assign(x.size(), Vec3::UnitY());
+    friction.force.assign(x.size(), 0.0);
+    arrivals_ = 0;
+}
+
+void ClothProblem::limit_strain(const Points& x) {
+    sheet_.limits = limits_;
+    widened_ = widen_strain_limits(sheet_.limits, x, limit_margin);
+}
+
+void ClothProblem::renew_friction() {
+    const Points force = contact_.body_forces(active_);
+    for (int i = 0; i < points(); ++i) {
+        const double now = force[i].norm();
+        if (now == 0) {
+            friction.force[i] = 0;
+        } else if (std::abs(now - friction.force[i]) > 0.3 * (1 - friction_margin) * now) {
+            // Impacts of a single step must not become friction: the force follows a rise slowly.
+            friction.force[i] = std::min(now, std::max(2 * friction.force[i], 9.81 * node_mass_[i]));
+            friction.normal[i] = force[i] / now;
+        }
+    }
+}
+
+void ClothProblem::arrive(const Points& x) {
+    contact_.prepare(x, Eigen::VectorXd::Zero(3 * points()));
+    active_ = contact_.active(x);
+    // What is lagged is renewed when the solve with the old values has got somewhere.
+    const bool renew = arrivals_ % renew_every == 0 || residual_ < 0.1 * renewed_at_;
+    ++arrivals_;
+    if (!renew) return;
+    renewed_at_ = residual_;
+    if (friction.coefficient > 0) renew_friction();
+    if (widened_ > 0) limit_strain(x);
+}
+
+double ClothProblem::value(const Points& x) {
+    double sum = sheet_value(sheet_, x) + toile::value(stitches, x) + toile::value(hooks, x);
+    for (int i = 0; i < points(); ++i) sum += node_mass_[i] * gravity * x[i].y();
+    if (friction.coefficient > 0) sum += toile::value(friction, x);
+    return sum + contact_.value(contact_.active(x));
+}
+
+void ClothProblem::gradient(const Points& x, Eigen::VectorXd& g) {
+    Points sheet(x.size(), Vec3::Zero());
+    sheet_gradient(sheet_, x, sheet);
+    g = flat(sheet);
+    add_gradient(stitches, x, g);
+    add_gradient(hooks, x, g);
+    for (int i = 0; i < points(); ++i) g[3 * i + 1] += node_mass_[i] * gravity;
+    if (friction.coefficient > 0) add_gradient(friction, x, g);
+    contact_.add_gradient(active_, g);
+    for (int i = 0; i < points(); ++i)
+        if (pinned_[i]) g.segment<3>(3 * i).setZero();
+}
+
+void ClothProblem::make_pattern() {
+    std::vector<std::pair<int, int>> pairs;
+    sheet_couplings(sheet_, pairs);
+    couplings(stitches, pairs);
+    contact_.couplings(active_, pairs);
+    matrix_ = BlockMatrix(points(), pairs);
+    sheet_slots(sheet_, matrix_);
+    matrix_made_ = true;
+}
+
+BlockMatrix& ClothProblem::hessian(const Points& x, bool exact, bool& pattern_changed) {
+    for (;;) {
+        if (!matrix_made_) {
+            make_pattern();
+            pattern_changed = true;
+        }
+        matrix_.set_zero();
+        if (contact_.add_hessian(x, active_, exact, matrix_)) break;
+        matrix_made_ = false;
+    }
+    sheet_hessian(sheet_, x, exact ? HessianKind::exact : HessianKind::projected, matrix_);
+    add_hessian(stitches, x, matrix_);
+    add_hessian(hooks, x, matrix_);
+    if (friction.coefficient > 0) add_hessian(friction, x, matrix_);
+    return matrix_;
+}
+
+void ClothProblem::multiply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
+    matrix_.multiply(v, product);
+    sheet_beyond_compact(sheet_, v, product);
+    for (int i = 0; i < points(); ++i)
+        if (pinned_[i]) product.segment<3>(3 * i) = v.segment<3>(3 * i);
+}
+
+double ClothProblem::feasible_step(const Points& x, const Eigen::VectorXd& dx) {
+    contact_.prepare(x, dx);
+    active_ = contact_.active(x);
+    double t = contact_.feasible_step(x, dx, nullptr, &blocking_);
+    blocking_triangle_ = -1;
+    if (!sheet_.limits.empty()) {
+        Points direction(x.size());
+        flat(direction) = t * dx;
+        const double s = strain_limit_step(sheet_.limits, x, direction, &blocking_triangle_);
+        if (s < 1) {
+            t *= 0.9 * s;
+            blocking_ = -1;
+        }
+    }
+    return t;
+}
+
+double ClothProblem::residual(const Points& x, const Eigen::VectorXd& g) {
+    Points normal;
+    if (friction.coefficient > 0) normal = contact_.body_forces(active_);
+    double worst = 0;
+    for (int i = 0; i < points(); ++i) {
+        if (pinned_[i]) continue;
+        double force = g.segment<3>(3 * i).norm();
+        if (friction.coefficient > 0) {
+            const double limit = friction.coefficient / friction_margin * normal[i].norm();
+            force += std::max(0.0, friction_force(friction, x, i).norm() - limit);
+        }
+        const double r = force / (9.81 * std::max(node_mass_[i], least_weight_));
+        if (r > worst) {
+            worst = r;
+            worst_ = i;
+        }
+    }
+    return residual_ = worst;
+}
+
+} // namespace toile

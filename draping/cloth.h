@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// Everything that acts on a garment, as one problem for a solver.
+
+#include "draping/contact/contact.h"
+#include "draping/contact/friction.h"
+#include "draping/energy/sheet.h"
+#include "draping/energy/spring.h"
+#include "draping/measure.h"
+#include "draping/solve/problem.h"
+
+#include <memory>
+
+namespace toile {
+
+/// The cloth of a garment as contact sees it.
+ContactCloth contact_cloth(const Garment& garment);
+
+/// kg per node.
+std::vector<double> node_masses(const Garment& garment, const PanelFabrics& fabrics);
+
+class ClothProblem final : public Problem {
+public:
+    ClothProblem(const Garment& garment, const PanelFabrics& fabrics, const TriMesh& body,
+                 const ContactOptions& contact);
+
+    // What acts beside the sheet itself; changed between solves.
+    double gravity = 0; ///< m/s2 along -y
+    std::vector<StitchSpring> stitches;
+    std::vector<HookSpring> hooks;
+    Friction friction;  ///< coefficient 0: none
+    void pin(int node) { pinned_[node] = 1; }
+
+    Sheet& sheet() { return sheet_; }
+    Contact& contact() { return contact_; }
+    const std::vector<double>& node_mass() const { return node_mass_; }
+
+    /// Every touching or later touching node is tied by friction to where it is now.
+    void rest_here(const Points& x, double coefficient);
+
+    /// Turns the strain limits on. Where x is beyond one, that limit is widened and then drawn in again as the
+    /// cloth gives way.
+    void limit_strain(const Points& x);
+    /// Triangles whose limit is still wider than the fabric's.
+    int widened() const { return widened_; }
+
+    /// The residual of `residual()` by node, and the node at which it is largest.
+    int worst_node() const { return worst_; }
+    int blocking_pair() const { return blocking_; }         ///< -1: none limited the last step
+    int blocking_triangle() const { return blocking_triangle_; }
+
+    int points() const override { return int(node_mass_.size()); }
+    void arrive(const Points& x) override;
+    double value(const Points& x) override;
+    void gradient(const Points& x, Eigen::VectorXd& g) override;
+    BlockMatrix& hessian(const Points& x, bool exact, bool& pattern_changed) override;
+    void multiply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const override;
+    double feasible_step(const Points& x, const Eigen::VectorXd& dx) override;
+    double residual(const Points& x, const Eigen::VectorXd& g) override;
+    const Eigen::VectorXd& mass() const override { return mass_; }
+    const std::vector<char>& pinned() const override { return pinned_; }
+
+private:
+    void make_pattern();
+    void renew_friction();
+
+    Sheet sheet_;
+    Contact contact_;
+    std::vector<double> node_mass_;
+    Eigen::VectorXd mass_;
+    std::vector<char> pinned_;
+    double least_weight_ = 0; ///< a tenth of the mean node's mass
+    std::vector<ActivePair> active_; ///< at the state of the last arrive()
+    BlockMatrix matrix_;
+    bool matrix_made_ = false;
+    std::vector<StrainLimit> limits_; ///< as the fabrics have them
+    int widened_ = 0;
+    int arrivals_ = 0;               ///< since friction and limits were renewed
+    double residual_ = 0, renewed_at_ = 0;
+    int worst_ = 0, blocking_ = -1, blocking_triangle_ = -1;
+};
+
+} // namespace toile

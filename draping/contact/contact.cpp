@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/contact/contact.h"
+
+#include "geometry/parallel.h"
+#include "geometry/toi.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace toile {
+
+namespace {
+
+constexpr double keep_of_gap = 0.1;       // a step leaves at least this share of every gap
+constexpr double least_slack = 0.0015;    // m; a list serves at least for motions of this size
+constexpr double slack_per_step = 3;      // and for this many steps of the present size
+constexpr int query_chunk = 64;
+
+Box ball_box(const Vec3& p, double r) { return Box(p.array() - r, p.array() + r); }
+
+template <std::size_t N> Box simplex_box(const Points& x, const std::array<int, N>& s, const std::vector<double>& slack) {
+    Box box;
+    for (int i : s) box.extend(ball_box(x[i], slack[i]));
+    return box;
+}
+
+Box grown(Box box, double margin) {
+    box.min().array() -= margin;
+    box.max().array() += margin;
+    return box;
+}
+
+template <std::size_t N>
+std::vector<Box> simplex_boxes(const Points& x, const std::vector<std::array<int, N>>& s,
+                               const std::vector<double>& slack) {
+    std::vector<Box> boxes(s.size());
+    for (std::size_t k = 0; k < s.size(); ++k) boxes[k] = simplex_box(x, s[k], slack);
+    return boxes;
+}
+
+} // namespace
+
+Contact::Contact(ContactCloth cloth, const TriMesh& body, const ContactOptions& options)
+    : cloth_(std::move(cloth)), options_(options), nodes_(int(cloth_.node_area.size())),
+      body_triangles_(body.triangles), body_(body.points) {
+    const EdgeTable edges = make_edges(body.triangles, int(body.points.size()));
+    body_edges_ = edges.ends;
+    body_area_.assign(body.points.size(), 0.0);
+    body_edge_area_.assign(edges.size(), 0.0);
+    for (std::size_t t = 0; t < body.triangles.size(); ++t) {
+        const Triangle& k = body.triangles[t];
+        const double area =
+            0.5 * (body.points[k[1]] - body.points[k[0]]).cross(body.points[k[2]] - body.points[k[0]]).norm();
+        for (int c = 0; c < 3; ++c) {
+            body_area_[k[c]] += area / 3;
+            body_edge_area_[edges.of_triangle[t][c]] += area / 3;
+        }
+    }
+    body_slack_.assign(body_.size(), 0.0);
+    make_body_trees();
+
+    int groups = 0;
+    for (int g : cloth_.group) groups = std::max(groups, g + 1);
+    ring_.resize(groups);
+    for (const auto& e : cloth_.edges) {
+        const int a = cloth_.group[e[0]], b = cloth_.group[e[1]];
+        ring_[a].push_back(b);
+        ring_[b].push_back(a);
+    }
+    for (auto& r : ring_) std::sort(r.begin(), r.end());
+}
+
+void Contact::set_options(const ContactOptions& options) {
+    options_ = options;
+    built_ = false;
+}
+
+void Contact::make_body_trees() {
+    body_built_at_ = body_;
+    std::vector<Box> points(body_.size());
+    for (std::size_t v = 0; v < body_.size(); ++v) points[v] = ball_box(body_[v], body_slack_[v]);
+    const auto triangles = simplex_boxes(body_, body_triangles_, body_slack_);
+    const auto edges = simplex_boxes(body_, body_edges_, body_slack_);
+    const bool fresh = body_point_tree_.size() == 0;
+    const auto update = [fresh](Bvh& tree, const std::vector<Box>& boxes) {
+        if (fresh)
+            tree = Bvh(boxes);
+        else
+            tree.refit(boxes);
+    };
+    update(body_point_tree_, points);
+    update(body_triangle_tree_, triangles);
+    update(body_edge_tree_, edges);
+}
+
+void Contact::set_body(const Points& body) { body_ = body; }
+
+std::array<Vec3, 4> Contact::corners(const Points& x, const ContactPair& p) const {
+    return {at(x, p.p[0]), at(x, p.p[1]), at(x, p.p[2]), at(x, p.p[3])};
+}
+
+Barrier Contact::barrier(const ContactPair& p) const {
+    Barrier b = p.with_body ? options_.body : options_.cloth;
+    b.floor *= p.distance / b.distance; // neighbours with little room between them keep the barrier's shape
+    b.distance = p.distance;
+    return b;
+}
+
+bool Contact::near_in_cloth(const ContactPair& p) const {
+    const int split = p.edge_edge ? 2 : 1;
+    for (int a = 0; a < split; ++a)
+        for (int b = split; b < 4; ++b) {
+            const auto& ring = ring_[cloth_.group[p.p[a]]];
+            if (std::binary_search(ring.begin(), ring.end(), cloth_.group[p.p[b]])) return true;
+        }
+    return false;
+}
+
+std::vector<double> Contact::moved_since_built(const Points& x) const {
+    std::vector<double> d(nodes_ + body_.size(), 0.0);
+    for (int i = 0; i < nodes_; ++i) d[i] = (x[i] - built_at_[i]).norm();
+    for (std::size_t v = 0; v < body_.size(); ++v) d[nodes_ + v] = (body_[v] - body_built_at_[v]).norm();
+    return d;
+}
+
+double Contact::moved(const std::vector<double>& d, const ContactPair& p) const {
+    if (p.edge_edge) return std::max(d[p.p[0]], d[p.p[1]]) + std::max(d[p.p[2]], d[p.p[3]]);
+    return d[p.p[0]] + std::max({d[p.p[1]], d[p.p[2]], d[p.p[3]]});
+}
+
+void Contact::prepare(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx) {
+    bool serves = built_;
+    for (int i = 0; serves && i < nodes_; ++i) {
+        const Vec3 now = x[i] - built_at_[i];
+        serves = now.norm() <= slack_[i] && (now + dx.segment<3>(3 * i)).norm() <= slack_[i];
+    }
+    for (std::size_t v = 0; serves && v < body_.size(); ++v) {
+        const Vec3 now = body_[v] - body_built_at_[v];
+        serves = now.norm() <= body_slack_[v] &&
+                 (!body_dx || (now + (*body_dx)[v]).norm() <= body_slack_[v]);
+    }
+    if (serves) return;
+
+    slack_.resize(nodes_);
+    for (int i = 0; i < nodes_; ++i)
+        slack_[i] = std::max(least_slack, slack_per_step * dx.segment<3>(3 * i).norm());
+    bool body_moves = false;
+    for (std::size_t v = 0; v < body_.size(); ++v) {
+        body_slack_[v] = body_dx ? slack_per_step * (*body_dx)[v].norm() : 0;
+        body_moves = body_moves || body_slack_[v] > 0 || body_[v] != body_built_at_[v];
+    }
+    if (body_moves) make_body_trees();
+    rebuild(x);
+}
+
+void Contact::rebuild(const Points& x) {
+    built_ = true;
+    built_at_ = x;
+    const int triangles = int(cloth_.triangles.size()), edges = int(cloth_.edges.size());
+    const double reach_body = options_.body.distance, reach_cloth = options_.cloth.distance;
+
+    const auto triangle_boxes = simplex_boxes(x, cloth_.triangles, slack_);
+    const auto edge_boxes = simplex_boxes(x, cloth_.edges, slack_);
+    if (options_.self) {
+        cloth_triangle_tree_ = Bvh(triangle_boxes);
+        cloth_edge_tree_ = Bvh(edge_boxes);
+    }
+
+    std::vector<double> slack = slack_;
+    slack.insert(slack.end(), body_slack_.begin(), body_slack_.end());
+
+    // Each query keeps what it finds; queries are put together in their order, whatever thread ran them.
+    const auto collect = [&](int queries, auto&& find) {
+        const int chunks = (queries + query_chunk - 1) / query_chunk;
+        std::vector<std::vector<ContactPair>> found(chunks);
+        parallel_for(chunks, 1, [&](int begin, int end) {
+            for (int c = begin; c < end; ++c)
+                for (int q = c * query_chunk; q < std::min(queries, (c + 1) * query_chunk); ++q)
+                    find(q, [&](ContactPair p) {
+                        const Barrier& b = p.with_body ? options_.body : options_.cloth;
+                        p.distance = b.distance;
+                        p.built = pair_geometry(corners(x, p), p.edge_edge).d;
+                        if (p.built > b.distance + moved(slack, p)) return;
+                        if (!p.with_body && near_in_cloth(p))
+                            for (int k : p.p) p.distance = std::min(p.distance, 0.5 * cloth_.node_reach[k]);
+                        found[c].push_back(p);
+                    });
+        });
+        for (auto& f : found) pairs_.insert(pairs_.end(), f.begin(), f.end());
+    };
+    const auto shares_group = [&](std::initializer_list<int> a, std::initializer_list<int> b) {
+        for (int i : a)
+            for (int j : b)
+                if (cloth_.group[i] == cloth_.group[j]) return true;
+        return false;
+    };
+
+    pairs_.clear();
+    collect(nodes_, [&](int i, auto&& keep) {
+        const Box box = ball_box(x[i], slack_[i]);
+        body_triangle_tree_.overlapping(grown(box, reach_body), [&](int t) {
+            const Triangle& k = body_triangles_[t];
+            keep({{i, nodes_ + k[0], nodes_ + k[1], nodes_ + k[2]}, false, true, 0, cloth_.node_area[i], 0, 0});
+        });
+        if (options_.self)
+            cloth_triangle_tree_.overlapping(grown(box, reach_cloth), [&](int t) {
+                const Triangle& k = cloth_.triangles[t];
+                if (!shares_group({i}, {k[0], k[1], k[2]}))
+                    keep({{i, k[0], k[1], k[2]}, false, false, 0, cloth_.node_area[i], 0, 0});
+            });
+    });
+    collect(triangles, [&](int t, auto&& keep) {
+        const Triangle& k = cloth_.triangles[t];
+        body_point_tree_.overlapping(grown(triangle_boxes[t], reach_body), [&](int v) {
+            keep({{nodes_ + v, k[0], k[1], k[2]}, false, true, 0, body_area_[v], 0, 0});
+        });
+    });
+    collect(edges, [&](int e, auto&& keep) {
+        const auto& a = cloth_.edges[e];
+        const double length2 = cloth_.edge_length[e] * cloth_.edge_length[e];
+        body_edge_tree_.overlapping(grown(edge_boxes[e], reach_body), [&](int f) {
+            const auto& b = body_edges_[f];
+            const double fade = length2 * (body_[b[1]] - body_[b[0]]).squaredNorm();
+            const double weight = std::min(cloth_.edge_area[e], body_edge_area_[f]);
+            keep({{a[0], a[1], nodes_ + b[0], nodes_ + b[1]}, true, true, 0, weight, fade, 0});
+        });
+        if (options_.self)
+            cloth_edge_tree_.overlapping(grown(edge_boxes[e], reach_cloth), [&](int f) {
+                if (f <= e) return;
+                const auto& b = cloth_.edges[f];
+                if (shares_group({a[0], a[1]}, {b[0], b[1]})) return;
+                const double fade = length2 * cloth_.edge_length[f] * cloth_.edge_length[f];
+                const double weight = std::min(cloth_.edge_area[e], cloth_.edge_area[f]);
+                keep({{a[0], a[1], b[0], b[1]}, true, false, 0, weight, fade, 0});
+            });
+    });
+}
+
+std::vector<ActivePair> Contact::active(const Points& x) const {
+    const std::vector<double> distance = moved_since_built(x);
+    const int n = int(pairs_.size()), chunk = 1024, chunks = (n + chunk - 1) / chunk;
+    std::vector<std::vector<ActivePair>> found(chunks);
+    parallel_for(chunks, 1, [&](int begin, int end) {
+        for (int c = begin; c < end; ++c)
+            for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
+                const ContactPair& p = pairs_[i];
+                if (p.built - moved(distance, p) >= p.distance) continue;
+                const auto corner = corners(x, p);
+                ActivePair a{i, pair_geometry(corner, p.edge_edge), {}};
+                if (a.geometry.d >= p.distance) continue;
+                if (p.edge_edge) a.fade = parallel_fade(corner, p.fade);
+                found[c].push_back(a);
+            }
+    });
+    std::vector<ActivePair> all;
+    for (const auto& f : found) all.insert(all.end(), f.begin(), f.end());
+    return all;
+}
+
+double Contact::value(const std::vector<ActivePair>& active) const {
+    double sum = 0;
+    for (const ActivePair& a : active) {
+        const ContactPair& p = pairs_[a.pair];
+        sum += p.weight * a.fade.value * barrier(p).energy(a.geometry.d);
+    }
+    return sum;
+}
+
+void Contact::add_gradient(const std::vector<ActivePair>& active, Eigen::VectorXd& g) const {
+    for (const ActivePair& a : active) {
+        const ContactPair& p = pairs_[a.pair];
+        const Barrier b = barrier(p);
+        const double slope = p.weight * a.fade.value * b.slope(a.geometry.d);
+        const double energy = a.fade.fading ? p.weight * b.energy(a.geometry.d) : 0;
+        for (int k = 0; k < 4; ++k) {
+            if (p.p[k] >= nodes_) continue;
+            auto gk = g.segment<3>(3 * p.p[k]);
+            gk += slope * a.geometry.weight[k] * a.geometry.normal;
+            if (a.fade.fading) gk += energy * a.fade.gradient[k];
+        }
+    }
+}
+
+bool Contact::add_hessian(const Points& x, const std::vector<ActivePair>& active, bool exact, BlockMatrix& h) const {
+    bool complete = true;
+    for (const ActivePair& a : active) {
+        const ContactPair& p = pairs_[a.pair];
+        const Barrier b = barrier(p);
+        const double scale = p.weight * a.fade.value;
+        const double curvature = scale * b.curvature(a.geometry.d);
+        Eigen::Matrix<double, 12, 12> bend;
+        const bool bent = exact && !a.fade.fading;
+        if (bent) bend = scale * b.slope(a.geometry.d) * distance_hessian(corners(x, p), a.geometry, p.edge_edge);
+        const Mat3 normal = curvature * a.geometry.normal * a.geometry.normal.transpose();
+        for (int i = 0; i < 4; ++i) {
+            if (p.p[i] >= nodes_) continue;
+            for (int j = 0; j < 4; ++j) {
+                if (p.p[j] >= nodes_ || p.p[j] > p.p[i]) continue;
+                Mat3 block = a.geometry.weight[i] * a.geometry.weight[j] * normal;
+                if (bent) block += bend.block<3, 3>(3 * i, 3 * j);
+                if (i == j) {
+                    h.add_diagonal(p.p[i], block);
+                } else if (const int slot = h.find(p.p[i], p.p[j]); slot >= 0) {
+                    h.add_off_diagonal(p.p[j], slot, block);
+                } else {
+                    complete = false;
+                }
+            }
+        }
+    }
+    return complete;
+}
+
+void Contact::couplings(const std::vector<ActivePair>& active, std::vector<std::pair<int, int>>& pairs) const {
+    const auto couple = [&pairs](const ContactPair& p) {
+        if (p.with_body) return; // cloth nodes of one edge or triangle, which the sheet couples
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < i; ++j) pairs.emplace_back(p.p[i], p.p[j]);
+    };
+    for (const ActivePair& a : active) couple(pairs_[a.pair]);
+    for (const ContactPair& p : pairs_)
+        if (p.built < 2 * p.distance) couple(p);
+}
+
+double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx, int* blocking) const {
+    const std::vector<double> distance = moved_since_built(x);
+    std::vector<double> step(nodes_ + body_.size(), 0.0);
+    for (int i = 0; i < nodes_; ++i) step[i] = dx.segment<3>(3 * i).norm();
+    if (body_dx)
+        for (std::size_t v = 0; v < body_.size(); ++v) step[nodes_ + v] = (*body_dx)[v].norm();
+    const auto motion_of = [&](int i) -> Vec3 {
+        if (i < nodes_) return dx.segment<3>(3 * i);
+        return body_dx ? (*body_dx)[i - nodes_] : Vec3::Zero();
+    };
+
+    const int n = int(pairs_.size()), chunk = 1024, chunks = (n + chunk - 1) / chunk;
+    std::vector<std::pair<double, int>> first(chunks, {1.0, -1});
+    parallel_for(chunks, 1, [&](int begin, int end) {
+        for (int c = begin; c < end; ++c)
+            for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
+                const ContactPair& p = pairs_[i];
+                const Barrier b = barrier(p);
+                const double room = p.built - moved(distance, p) - moved(step, p);
+                if (room > b.distance) continue;
+                Motion m;
+                m.x = corners(x, p);
+                for (int k = 0; k < 4; ++k) m.dx[k] = motion_of(p.p[k]);
+                ToiOptions options;
+                options.keep = keep_of_gap;
+                options.min_distance = b.floor;
+                const double t = p.edge_edge ? time_of_impact_edge_edge(m, options)
+                                             : time_of_impact_point_triangle(m, options);
+                if (t < first[c].first) first[c] = {t, i};
+            }
+    });
+    std::pair<double, int> least{1.0, -1};
+    for (const auto& f : first)
+        if (f.first < least.first) least = f;
+    if (blocking) *blocking = least.second;
+    return least.first;
+}
+
+Points Contact::body_forces(const std::vector<ActivePair>& active) const {
+    Points force(nodes_, Vec3::Zero());
+    for (const ActivePair& a : active) {
+        const ContactPair& p = pairs_[a.pair];
+        if (!p.with_body) continue;
+        const double slope = p.weight * a.fade.value * barrier(p).slope(a.geometry.d);
+        for (int k = 0; k < 4; ++k)
+            if (p.p[k] < nodes_) force[p.p[k]] -= slope * a.geometry.weight[k] * a.geometry.normal;
+    }
+    return force;
+}
+
+int Contact::violations(const Points& x) {
+    built_ = false;
+    prepare(x, Eigen::VectorXd::Zero(3 * nodes_));
+    int count = 0;
+    for (const ContactPair& p : pairs_) count += p.built <= barrier(p).floor;
+    return count;
+}
+
+} // namespace toile

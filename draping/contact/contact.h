@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// Contact of a cloth with itself and with a body: the pairs that can touch, the barrier between them, and the
+// longest step that leaves them apart.
+
+#include "draping/contact/barrier.h"
+#include "draping/algebra/block_matrix.h"
+#include "geometry/bvh.h"
+#include "geometry/edges.h"
+#include "geometry/tri_mesh.h"
+
+#include <string>
+
+namespace toile {
+
+struct ContactOptions {
+    Barrier body;  ///< between cloth and body
+    Barrier cloth; ///< between cloth and itself
+    bool self = true; ///< contact of the cloth with itself
+};
+
+/// The cloth as contact sees it.
+struct ContactCloth {
+    std::vector<Triangle> triangles;       ///< over nodes
+    std::vector<std::array<int, 2>> edges; ///< over nodes
+    std::vector<double> node_area;         ///< m2
+    std::vector<double> edge_length;       ///< rest, m
+    std::vector<double> edge_area;         ///< m2
+    std::vector<double> node_reach;        ///< m, smallest rest altitude of the triangles round a node
+    /// Nodes of equal group count as one: the nodes of an open seam that closing will merge.
+    std::vector<int> group;
+};
+
+/// A point-triangle or edge-edge pair. Indices below the node count are nodes, others are body points.
+struct ContactPair {
+    std::array<int, 4> p{};
+    bool edge_edge = false;
+    bool with_body = false;
+    double distance = 0; ///< m, this pair's barrier acts below; at most the barrier's
+    double weight = 0;   ///< m2
+    double fade = 0;     ///< product of squared rest lengths, for edges
+    double built = 0;    ///< distance when the list was made
+};
+
+/// A pair within reach of its barrier at some state.
+struct ActivePair {
+    int pair = 0;
+    PairGeometry geometry;
+    ParallelFade fade;
+};
+
+class Contact {
+public:
+    Contact(ContactCloth cloth, const TriMesh& body, const ContactOptions& options);
+
+    const ContactOptions& options() const { return options_; }
+    /// New barriers; the next prepare() makes a new list.
+    void set_options(const ContactOptions& options);
+
+    /// Moves the body; the caller has made sure that nothing is crossed on the way.
+    void set_body(const Points& body);
+    const Points& body() const { return body_; }
+
+    /// Makes sure that every pair that the step from x by dx (and of the body by body_dx) can bring into reach is
+    /// on the list. Does nothing while the current list still serves.
+    void prepare(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx = nullptr);
+
+    /// The pairs of the list whose barrier acts at x.
+    std::vector<ActivePair> active(const Points& x) const;
+
+    double value(const std::vector<ActivePair>& active) const;
+    void add_gradient(const std::vector<ActivePair>& active, Eigen::VectorXd& g) const;
+    /// Adds second derivatives; `exact` includes the curvature of the distance, otherwise what is added is
+    /// positive semidefinite. False when the matrix lacks a block (nothing of that pair is added).
+    bool add_hessian(const Points& x, const std::vector<ActivePair>& active, bool exact, BlockMatrix& h) const;
+
+    /// Blocks that active pairs, and pairs that were near when the list was made, couple.
+    void couplings(const std::vector<ActivePair>& active, std::vector<std::pair<int, int>>& pairs) const;
+
+    /// Largest t in [0, 1] for which no pair passes its floor between x and x + t dx (and body + t body_dx).
+    /// `blocking`, when given, receives the pair that limits t, -1 when none.
+    double feasible_step(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx = nullptr,
+                         int* blocking = nullptr) const;
+
+    /// Force of the body's barrier on every node, N.
+    Points body_forces(const std::vector<ActivePair>& active) const;
+
+    /// Pairs nearer than their floor, or touching: 0 for a start that the barrier can take.
+    int violations(const Points& x);
+
+    const ContactPair& pair(int i) const { return pairs_[i]; }
+    int node_count() const { return nodes_; }
+
+private:
+    Vec3 at(const Points& x, int i) const { return i < nodes_ ? x[i] : body_[i - nodes_]; }
+    std::array<Vec3, 4> corners(const Points& x, const ContactPair& p) const;
+    Barrier barrier(const ContactPair& p) const;
+    void rebuild(const Points& x);
+    double moved(const std::vector<double>& distance, const ContactPair& p) const;
+    std::vector<double> moved_since_built(const Points& x) const;
+    bool near_in_cloth(const ContactPair& p) const;
+    void make_body_trees();
+
+    ContactCloth cloth_;
+    ContactOptions options_;
+    int nodes_ = 0;
+    std::vector<Triangle> body_triangles_;
+    std::vector<std::array<int, 2>> body_edges_;
+    std::vector<double> body_area_, body_edge_area_;
+    Points body_;
+    Bvh body_triangle_tree_, body_edge_tree_, body_point_tree_;
+    Bvh cloth_triangle_tree_, cloth_edge_tree_;
+    std::vector<std::vector<int>> ring_; ///< groups next to a group, sorted
+
+    bool built_ = false;
+    std::vector<ContactPair> pairs_;
+    Points built_at_;
+    std::vector<double> slack_;      ///< how far each node may move from built_at_ while the list serves
+    std::vector<double> body_slack_; ///< the same for body points
+    Points body_built_at_;
+};
+
+} // namespace toile

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// What the cloth itself resists: stretch, bending and the strain limits of its fabrics, put together.
+
+#include "draping/algebra/block_matrix.h"
+#include "draping/energy/bend.h"
+#include "draping/energy/strain_limit.h"
+#include "draping/energy/stretch.h"
+
+namespace toile {
+
+struct Sheet {
+    std::vector<StretchElement> stretch;
+    Bending bending;
+    Eigen::SparseMatrix<double> beyond_compact; ///< bending.stiffness less its compact form
+    std::vector<StrainLimit> limits;            ///< empty: none
+    double softness = 1; ///< factor on the membrane; below 1 on the way to a drape, whose steps it lengthens
+
+    /// Elements by colour: those of one colour share no node, so that they can be added at once and the sum at
+    /// every block has one order whatever the number of threads.
+    std::vector<int> order;
+    std::vector<int> colours;  ///< colour c holds order[colours[c] .. colours[c + 1])
+    std::vector<std::array<int, Patch::max_nodes * Patch::max_nodes>> slots; ///< of blocks (a, b) in the matrix
+};
+
+/// `fabrics` has one entry per panel. Strain limits are made but act only when `limits` is not cleared.
+Sheet make_sheet(const Garment& garment, const std::vector<Fabric>& fabrics);
+
+double sheet_value(const Sheet& sheet, const Points& x);
+void sheet_gradient(const Sheet& sheet, const Points& x, Points& gradient);
+
+/// Blocks that sheet_hessian fills.
+void sheet_couplings(const Sheet& sheet, std::vector<std::pair<int, int>>& pairs);
+
+/// Looks up where the elements' blocks lie; to be called whenever the matrix has a new pattern.
+void sheet_slots(Sheet& sheet, const BlockMatrix& matrix);
+
+/// Adds second derivatives, with bending in its compact form.
+void sheet_hessian(const Sheet& sheet, const Points& x, HessianKind kind, BlockMatrix& matrix);
+
+/// Adds to y what the compact form leaves out of the product of the second derivative with v.
+void sheet_beyond_compact(const Sheet& sheet, const Eigen::VectorXd& v, Eigen::VectorXd& y);
+
+} // namespace toile

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/solve/settle.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toile {
+
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr int direct_below = 1500; // points: a factorisation is cheaper than keeping one
+constexpr int cg_patience = 12;    // iterations after which a kept factor is too old
+constexpr double cg_tolerance = 0.1;
+constexpr int tail_cg_limit = 60;
+constexpr double tail_time_step = 1; // s: before that the state is still travelling, however small the forces
+
+double longest(const VectorXd& dx) {
+    double most = 0;
+    for (Eigen::Index i = 0; i < dx.size(); i += 3) most = std::max(most, dx.segment<3>(i).squaredNorm());
+    return std::sqrt(most);
+}
+
+void move(Points& x, const VectorXd& dx, double t) { flat(x) += t * dx; }
+
+struct Run {
+    Problem& problem;
+    Cholesky& factor;
+    const SettleOptions& options;
+    SettleResult result;
+    bool analysed = false, factored = false;
+    VectorXd work;
+
+    void analyse_if(bool pattern_changed, const BlockMatrix& h) {
+        if (analysed && !pattern_changed) return;
+        factor.analyse(h, analysed);
+        analysed = true;
+        factored = false;
+    }
+
+    bool factorise(const BlockMatrix& h) {
+        ++result.factorisations;
+        factored = factor.factorise(h);
+        return factored;
+    }
+
+    /// Solves h dx = -g by conjugate gradients preconditioned with the kept factor. False when it takes too long.
+    bool solve_with_kept(const BlockMatrix& h, const VectorXd& g, VectorXd& dx) {
+        VectorXd r = -g, z, p, hp;
+        dx.setZero(g.size());
+        factor.solve(r, z);
+        p = z;
+        double rz = r.dot(z);
+        const double stop = cg_tolerance * cg_tolerance * rz;
+        for (int k = 0; k < cg_patience; ++k) {
+            ++result.conjugate_gradients;
+            h.multiply(p, hp);
+            const double curvature = p.dot(hp);
+            if (!(curvature > 0)) return false;
+            const double a = rz / curvature;
+            dx += a * p;
+            r -= a * hp;
+            factor.solve(r, z);
+            const double next = r.dot(z);
+            if (next <= stop) return true;
+            p = z + (next / rz) * p;
+            rz = next;
+        }
+        return false;
+    }
+
+    bool direction(BlockMatrix& h, const VectorXd& g, VectorXd& dx) {
+        if (factored && problem.points() >= direct_below && solve_with_kept(h, g, dx)) return true;
+        if (!factorise(h)) return false;
+        factor.solve(-g, dx);
+        return true;
+    }
+
+    /// Minimises g.d + d.H d / 2 within |d| <= radius, in the norm of the kept factor. Returns whether the
+    /// boundary was reached; `iterations` receives the CG iterations taken.
+    bool trust_region_direction(const VectorXd& g, double radius, double tolerance, VectorXd& d,
+                                int& iterations) {
+        d.setZero(g.size());
+        VectorXd r = -g, z, p, hp;
+        factor.solve(r, z);
+        p = z;
+        double rz = r.dot(z);
+        const double stop = tolerance * tolerance * rz;
+        double dd = 0, dp = 0, pp = rz; // inner products in the factor's norm
+        const auto to_boundary = [&] {
+            const double t = (-dp + std::sqrt(dp * dp + pp * (radius * radius - dd))) / pp;
+            d += t * p;
+            return true;
+        };
+        for (iterations = 1; iterations <= tail_cg_limit; ++iterations) {
+            ++result.conjugate_gradients;
+            problem.multiply(p, hp);
+            const double curvature = p.dot(hp);
+            if (!(curvature > 0)) return to_boundary();
+            const double a = rz / curvature;
+            if (dd + 2 * a * dp + a * a * pp >= radius * radius) return to_boundary();
+            d += a * p;
+            dd += 2 * a * dp + a * a * pp;
+            r -= a * hp;
+            factor.solve(r, z);
+            const double next = r.dot(z);
+            if (next <= stop) return false;
+            const double beta = next / rz;
+            dp = beta * (dp + a * pp);
+            pp = next + beta * beta * pp;
+            p = z + beta * p;
+            rz = next;
+        }
+        return false;
+    }
+};
+
+} // namespace
+
+SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleOptions& options) {
+    Run run{problem, factor, options, {}, false, false, {}};
+    SettleResult& result = run.result;
+    VectorXd g, dx, hdx, shift;
+    double h = options.time_step;
+    double radius = 0; // of the trust region, 0 while not in the tail
+    int failures = 0;
+    bool still = false;
+
+    problem.arrive(x);
+    for (;; ++result.iterations) {
+        result.energy = problem.value(x);
+        problem.gradient(x, g);
+        result.residual = problem.residual(x, g);
+        if (options.progress && !options.progress(result.iterations, result.residual)) {
+            result.end = SettleEnd::stopped;
+            return result;
+        }
+        if (result.residual <= options.tolerance || still) {
+            result.end = SettleEnd::settled;
+            return result;
+        }
+        if (result.iterations >= options.max_iterations) {
+            result.end = SettleEnd::iterations;
+            return result;
+        }
+
+        const bool tail = result.residual < options.exact_below && run.factored && h > tail_time_step;
+        if (!tail) radius = 0;
+        bool pattern_changed = false, boundary = false;
+        int cg = 0;
+        BlockMatrix& m = problem.hessian(x, tail, pattern_changed);
+        if (!tail || pattern_changed || radius == 0) {
+            if (tail) { // the factor of the projected matrix is the norm of the trust region
+                problem.hessian(x, false, pattern_changed);
+                radius = 0;
+            }
+            shift = problem.mass() / (h * h);
+            m.add_to_diagonal(shift);
+            m.pin(problem.pinned());
+            run.analyse_if(pattern_changed, m);
+            const bool good = tail ? run.factorise(m) : run.direction(m, g, dx);
+            if (!good) {
+                h *= 0.25;
+                if (++failures > 12) {
+                    result.end = SettleEnd::stalled;
+                    return result;
+                }
+                continue;
+            }
+            if (tail) {
+                factor.solve(-g, dx);
+                radius = std::sqrt(-g.dot(dx));
+                BlockMatrix& exact = problem.hessian(x, true, pattern_changed);
+                exact.add_to_diagonal(problem.mass() / 100.0);
+                exact.pin(problem.pinned());
+                boundary = run.trust_region_direction(g, radius, std::min(0.1, std::sqrt(result.residual)), dx, cg);
+            }
+        } else {
+            m.add_to_diagonal(problem.mass() / 100.0);
+            m.pin(problem.pinned());
+            boundary = run.trust_region_direction(g, radius, std::min(0.1, std::sqrt(result.residual)), dx, cg);
+        }
+
+        const double reach = longest(dx);
+        if (reach > options.max_step) dx *= options.max_step / reach;
+        const double slope = g.dot(dx);
+        problem.multiply(dx, hdx);
+        const double bend = dx.dot(hdx);
+
+        double t = problem.feasible_step(x, dx);
+        const double feasible = t;
+        double actual = 0, predicted = 0;
+        bool accepted = false;
+        for (int cut = 0; cut < 12 && t > 1e-12; ++cut) {
+            predicted = -(t * slope + 0.5 * t * t * bend);
+            Points trial = x;
+            move(trial, dx, t);
+            const double value = problem.value(trial);
+            actual = result.energy - value;
+            const double noise = 1e-13 * (1 + std::abs(result.energy));
+            if (actual >= 1e-4 * -t * slope || (predicted < noise && actual > -noise)) {
+                x = std::move(trial);
+                accepted = true;
+                break;
+            }
+            t *= 0.5;
+        }
+        if (radius > 0) {
+            const double ratio = predicted > 0 ? actual / predicted : 0;
+            if (!accepted || t < feasible || ratio < 0.25)
+                radius *= 0.4;
+            else if (ratio > 0.75 && boundary)
+                radius *= 2.5;
+            if (cg > 40) radius = 0; // the factor is too old: renew it
+        } else if (accepted && t == feasible && actual > 0.5 * predicted) {
+            h *= 2;
+        } else if (!accepted || actual < 0.1 * predicted) {
+            h *= 0.5;
+        }
+        if (!accepted) {
+            if (++failures > 12) {
+                result.end = SettleEnd::stalled;
+                return result;
+            }
+        } else {
+            failures = 0;
+            still = options.still > 0 && t == 1 && longest(dx) < options.still && h > 1;
+            problem.arrive(x);
+        }
+    }
+}
+
+} // namespace toile

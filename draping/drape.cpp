@@ -3,38 +3,55 @@
 
 #include "draping/cloth.h"
 #include "draping/solve/settle.h"
-#include "geometry/intersections.h"
 #include "sewing/arrange.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <limits>
+#include <map>
 
 namespace toile {
 
 namespace {
 
 using Clock = std::chrono::steady_clock;
-double since(Clock::time_point t) { return std::chrono::duration<double>(Clock::now() - t).count(); }
 
-bool talk() { static bool t = std::getenv("TOILE_TALK") != nullptr; return t; }
+constexpr double seam_stiffness = 500;   // N/m per metre of seam while it is far open
+constexpr double seam_pull = 6;          // N per metre of seam: what a far open seam pulls with
+constexpr double weld_gap = 2e-4;        // m, below which a seam is closed for good
+constexpr double contact_share = 0.06;   // of the edge length: contact distance of levels that are not the last
+constexpr double barrier_stiffness = 1e6; // Pa/m for a cloth of 0.15 kg/m2 at a distance of half a millimetre
+constexpr double floor_share = 0.1;      // of the contact distance that is never entered
+constexpr double slid = 0.10;            // m below its place at which a held edge counts as slid off
+constexpr double coarse_residual = 1;    // to which levels that are not the last are settled
 
-double total_area(const Garment& g) {
-    double a = 0;
-    for (const Mat2& r : g.rest.edges) a += 0.5 * std::abs(r.determinant());
-    return a;
+// Labels of edges that carry a garment by themselves and hold it up only once friction does: in GarmentCode files
+// the waist of skirts and trousers, and the top of strapless tops. Shoulders carry what hangs from collars.
+constexpr std::array<const char*, 2> carrying_labels{"lower_interface", "strapless_top"};
+
+double total(const std::vector<double>& v) {
+    double sum = 0;
+    for (double e : v) sum += e;
+    return sum;
 }
 
-ContactOptions contact_options(double distance, double density) {
-    ContactOptions c;
-    c.body.distance = distance;
-    c.body.floor = 0.1 * distance;
-    c.body.stiffness = 1e6 * std::max(0.05, density / 0.15) * (0.5e-3 / distance);
-    c.cloth = c.body;
-    return c;
+std::string text(const char* format, auto... values) {
+    char buffer[512];
+    std::snprintf(buffer, sizeof buffer, format, values...);
+    return buffer;
+}
+
+Points vertex_normals(const TriMesh& mesh) {
+    Points n(mesh.points.size(), Vec3::Zero());
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 a = (mesh.points[t[1]] - mesh.points[t[0]]).cross(mesh.points[t[2]] - mesh.points[t[0]]);
+        for (int i : t) n[i] += a;
+    }
+    for (Vec3& v : n) v.normalize();
+    return n;
 }
 
 double largest_gap(const Garment& g, const Points& x) {
@@ -42,6 +59,341 @@ double largest_gap(const Garment& g, const Points& x) {
     for (const Stitch& s : g.stitches)
         gap = std::max(gap, (x[s.a] - (1 - s.r) * x[s.b[0]] - s.r * x[s.b[1]]).norm());
     return gap;
+}
+
+/// One drape on its way: what the stages share.
+struct Run {
+    const Pattern& pattern;
+    const FlatPattern& flat;
+    const TriMesh& body;
+    const PanelFabrics& fabrics;
+    const DrapeOptions& options;
+    DrapeResult result;
+
+    Clock::time_point started = Clock::now();
+    double density = 0;
+    bool stopped = false;      ///< by the caller or by time
+    int iterations_left = 0;
+    double share_begin = 0, share_end = 0; ///< of the whole, of the stage at work
+    double done = 0;
+    std::string stage;
+    int level = 0;
+
+    Garment garment;           ///< of the level at work, closed
+    Points x;                  ///< its nodes
+    std::map<std::string, double> carried_at; ///< mean height of each carrying label where the file puts it
+
+    double seconds() const { return std::chrono::duration<double>(Clock::now() - started).count(); }
+    int levels() const { return int(flat.levels.size()); }
+    bool last_level() const { return level + 1 == levels(); }
+
+    void begin(const char* name, double share) {
+        stage = name;
+        share_begin = share_end;
+        share_end = std::min(1.0, share_begin + share);
+    }
+
+    bool tell(double within, double residual) {
+        done = std::max(done, share_begin + (share_end - share_begin) * std::clamp(within, 0.0, 1.0));
+        const double so_far = seconds();
+        if (so_far > options.max_seconds) stopped = true;
+        if (options.progress) {
+            DrapeProgress p;
+            p.stage = stage;
+            p.level = level;
+            p.levels = levels();
+            p.residual = residual;
+            p.done = done;
+            p.seconds_left = done > 0.02 ? so_far * (1 - done) / done : std::numeric_limits<double>::infinity();
+            if (!options.progress(p)) stopped = true;
+        }
+        return !stopped;
+    }
+
+    /// Settles and books the work on the level.
+    SettleResult settle_some(ClothProblem& problem, Points& at, Cholesky& factor, SettleOptions o) {
+        o.max_iterations = std::min(o.max_iterations, iterations_left);
+        const double from = share_begin, span = share_end - share_begin;
+        o.progress = [&, base = done](int i, double r) {
+            const double within = (base - from) / std::max(span, 1e-9);
+            return tell(within + (1 - within) * (1 - std::exp(-i / 60.0)), r);
+        };
+        const SettleResult r = settle(problem, at, factor, o);
+        iterations_left -= r.iterations;
+        result.levels.back().iterations += r.iterations;
+        result.levels.back().factorisations += r.factorisations;
+        return r;
+    }
+
+    ContactOptions contact_options() const {
+        const double distance = last_level() ? options.clearance
+                                             : std::max(options.clearance,
+                                                        contact_share * flat.levels[level].edge_length);
+        ContactOptions c;
+        c.body.distance = distance;
+        c.body.floor = floor_share * distance;
+        c.body.stiffness = barrier_stiffness * std::max(0.05, density) / 0.15 * (0.5e-3 / distance);
+        c.cloth = c.body;
+        return c;
+    }
+};
+
+bool carries(const std::string& label) {
+    return std::find(carrying_labels.begin(), carrying_labels.end(), label) != carrying_labels.end();
+}
+
+/// Hooks hold the heights of carrying edges, with no more than twice the garment's weight in all.
+std::vector<HookSpring> hooks(const Garment& g, const std::map<std::string, double>& height, double weight) {
+    std::vector<HookSpring> springs;
+    std::vector<char> hooked(g.node_count, 0);
+    for (const BorderLine& b : g.borders) {
+        if (!carries(b.label)) continue;
+        for (int v : b.vertices) {
+            const int node = g.node_of_vertex[v];
+            if (hooked[node]) continue;
+            hooked[node] = 1;
+            HookSpring s;
+            s.node = node;
+            s.place = Vec3(0, height.at(b.label), 0);
+            s.axes = Vec3::UnitY();
+            springs.push_back(s);
+        }
+    }
+    for (HookSpring& s : springs) {
+        s.cap = 2 * weight / double(springs.size());
+        s.stiffness = s.cap / 0.01;
+    }
+    return springs;
+}
+
+std::map<std::string, double> label_heights(const Garment& g, const Points& x) {
+    std::map<std::string, std::pair<double, int>> sum;
+    for (const BorderLine& b : g.borders)
+        if (carries(b.label))
+            for (int v : b.vertices) {
+                sum[b.label].first += x[g.node_of_vertex[v]].y();
+                ++sum[b.label].second;
+            }
+    std::map<std::string, double> mean;
+    for (const auto& [label, s] : sum) mean[label] = s.first / s.second;
+    return mean;
+}
+
+/// Merges the nodes of closed seams; every group of nodes goes to its mean.
+Points merge(const Garment& closed, const std::vector<int>& map, const Points& x) {
+    Points merged(closed.node_count, Vec3::Zero());
+    std::vector<int> count(closed.node_count, 0);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        merged[map[i]] += x[i];
+        ++count[map[i]];
+    }
+    for (int i = 0; i < closed.node_count; ++i) merged[i] /= count[i];
+    return merged;
+}
+
+/// Pulls the seams of the coarsest level shut around the body. True when every seam has closed.
+bool close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Points& x) {
+    Cholesky factor;
+    SettleOptions o;
+    o.tolerance = 1e-2;
+    o.max_iterations = 6;
+    o.exact_below = 0;
+    constexpr int rounds = 60;
+    double last = std::numeric_limits<double>::infinity(), cap_scale = 1;
+    for (int round = 0; round < rounds && !run.stopped; ++round) {
+        o.time_step = std::min(0.02 * std::pow(2.0, round / 3), 1.0);
+        run.settle_some(problem, x, factor, o);
+        const double gap = largest_gap(open, x);
+        if (gap < weld_gap) return true;
+        if (gap < 0.01)
+            for (auto& s : problem.stitches) s.stiffness = std::min(3 * s.stiffness, 2e4 * s.cap);
+        if (gap > 0.95 * last) {
+            if (cap_scale > 30) return false;
+            cap_scale *= 1.5;
+            for (auto& s : problem.stitches) s.cap *= 1.5;
+        }
+        last = gap;
+    }
+    return false;
+}
+
+/// Places and sews the coarsest level. The cloth may pass through itself on the way when it cannot close
+/// otherwise; what counts is that the sewn garment does not cross itself.
+void sew_coarsest(Run& run) {
+    const auto start = Clock::now();
+    const FlatLevel& flat = run.flat.levels[0];
+    const Garment open = sew(run.pattern, flat);
+    const Points placed = place(run.pattern, flat);
+    run.carried_at = label_heights(open, placed);
+    run.result.levels.push_back({flat.edge_length, int(flat.points.size()), 0, 0, 0});
+    run.begin("sew", 0.15);
+
+    std::vector<int> map;
+    run.garment = close_seams(open, &map);
+    bool closed = false;
+    int crossings = 0;
+    for (const bool self : {true, false}) {
+        ContactOptions contact = run.contact_options();
+        contact.self = self;
+        ClothProblem problem(open, run.fabrics, run.body, contact);
+        problem.sheet().softness = 1.0 / 16;
+        for (const Stitch& s : open.stitches)
+            problem.stitches.push_back({s.a, s.b, s.r, seam_stiffness * s.length, seam_pull * s.length});
+        problem.hooks = hooks(open, run.carried_at, 9.81 * total(problem.node_mass()));
+        Points x = placed;
+        closed = close_open_seams(run, open, problem, x);
+        const Points merged = merge(run.garment, map, x);
+        crossings = count_intersections(node_triangles(run.garment), merged, run.body).cloth_cloth;
+        run.x = merged;
+        if (run.stopped || (closed && crossings == 0)) {
+            if (!self)
+                run.result.decisions.push_back("cloth passed through itself while seams closed: with contact "
+                                               "between panels a seam could not close; the sewn garment does "
+                                               "not cross itself (0 pairs)");
+            break;
+        }
+    }
+    if (!closed && !run.stopped)
+        run.result.where = text("seams did not close: %.1f mm stay open", 1e3 * largest_gap(open, placed));
+    const double s = std::chrono::duration<double>(Clock::now() - start).count();
+    run.result.levels.back().seconds += s;
+    run.result.seconds.push_back({"sew", s});
+}
+
+/// Carries the drape of one level to the next finer one.
+void refine(Run& run) {
+    const Garment coarse = std::move(run.garment);
+    const FlatLevel& flat = run.flat.levels[run.level];
+    run.garment = close_seams(sew(run.pattern, flat));
+    Points fine(run.garment.node_count, Vec3::Zero());
+    std::vector<int> count(run.garment.node_count, 0);
+    for (std::size_t v = 0; v < flat.points.size(); ++v) {
+        const Interpolation& p = run.flat.prolongation[run.level - 1][v];
+        const int node = run.garment.node_of_vertex[v];
+        for (int k = 0; k < 3; ++k) fine[node] += p.weight[k] * run.x[coarse.node_of_vertex[p.from[k]]];
+        ++count[node];
+    }
+    for (int i = 0; i < run.garment.node_count; ++i) fine[i] /= count[i];
+    run.x = std::move(fine);
+    run.result.levels.push_back({flat.edge_length, int(flat.points.size()), 0, 0, 0});
+}
+
+/// Draws the body in until the cloth is clear of it, and lets it grow back under contact. Fine triangles cut the
+/// creases and curves of the coarse ones they come from, by a millimetre or so.
+void clear_of_body(Run& run, ClothProblem& problem, Cholesky& factor) {
+    const std::vector<Triangle> cloth = node_triangles(run.garment);
+    const Points normals = vertex_normals(run.body);
+    TriMesh drawn = run.body;
+    double depth = 0;
+    for (const double d : {0.0, 0.002, 0.005, 0.01, 0.02, 0.04}) {
+        depth = d;
+        for (std::size_t v = 0; v < drawn.points.size(); ++v) drawn.points[v] = run.body.points[v] - d * normals[v];
+        problem.contact().set_body(drawn.points);
+        if (problem.contact().violations(run.x) == 0 &&
+            count_intersections(cloth, run.x, drawn).cloth_avatar == 0)
+            break;
+    }
+    if (depth == 0) return;
+    run.begin("grow", 0);
+    SettleOptions o;
+    o.tolerance = 1;
+    o.max_iterations = 3;
+    o.exact_below = 0;
+    const Eigen::VectorXd still = Eigen::VectorXd::Zero(3 * run.garment.node_count);
+    for (int k = 0; k < 200 && !run.stopped; ++k) {
+        Points motion(drawn.points.size());
+        for (std::size_t v = 0; v < motion.size(); ++v) motion[v] = run.body.points[v] - problem.contact().body()[v];
+        problem.contact().prepare(run.x, still, &motion);
+        const double t = problem.contact().feasible_step(run.x, still, &motion);
+        Points next = problem.contact().body();
+        for (std::size_t v = 0; v < motion.size(); ++v) next[v] = t == 1 ? run.body.points[v] : Vec3(next[v] + t * motion[v]);
+        problem.contact().set_body(next);
+        if (t == 1) break;
+        run.settle_some(problem, run.x, factor, o);
+    }
+}
+
+void note_where(Run& run, const ClothProblem& problem, const SettleResult& r) {
+    const Vec3 p = run.x[problem.worst_node()];
+    run.result.where = text("residual %.3g at (%.3f, %.3f, %.3f) m", r.residual, p.x(), p.y(), p.z());
+    int panel = -1;
+    for (std::size_t v = 0; v < run.garment.node_of_vertex.size() && panel < 0; ++v)
+        if (run.garment.node_of_vertex[v] == problem.worst_node()) panel = run.garment.panel_of_vertex[v];
+    if (panel >= 0) run.result.where += " on panel \"" + run.garment.panel_names[panel] + "\"";
+}
+
+/// Brings one level to rest: softened membrane first, whose longer steps find the lower drape.
+void settle_level(Run& run) {
+    const auto start = Clock::now();
+    const ContactOptions contact = run.contact_options();
+    ClothProblem problem(run.garment, run.fabrics, run.body, contact);
+    problem.gravity = run.options.gravity;
+    const double weight = run.options.gravity * total(problem.node_mass());
+    Cholesky factor;
+    const bool first = run.level == 0;
+    if (first) problem.hooks = hooks(run.garment, run.carried_at, weight);
+    run.begin("settle", 0.85 * std::pow(4.0, run.level) / ((std::pow(4.0, run.levels()) - 1) / 3));
+    problem.rest_here(run.x, run.result.friction);
+    problem.sheet().softness = first ? 1.0 / 16 : 1.0 / 4;
+    clear_of_body(run, problem, factor);
+
+    struct Pass {
+        double softness;
+        int iterations;
+        bool hooked;
+    };
+    const std::vector<Pass> passes = first ? std::vector<Pass>{{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, 150, false}}
+                                           : std::vector<Pass>{{1.0 / 4, 8, false}, {1, 600, false}};
+    SettleResult r;
+    for (const Pass& pass : passes) {
+        if (run.stopped) break;
+        const bool last_pass = &pass == &passes.back();
+        problem.sheet().softness = pass.softness;
+        if (!pass.hooked && !problem.hooks.empty()) {
+            problem.hooks.clear();
+            problem.rest_here(run.x, run.result.friction);
+        }
+        SettleOptions o;
+        o.tolerance = run.last_level() && last_pass ? run.options.tolerance : coarse_residual;
+        o.max_iterations = pass.iterations;
+        o.exact_below = last_pass ? 20 : 0;
+        if (last_pass) problem.limit_strain(run.x);
+        r = run.settle_some(problem, run.x, factor, o);
+    }
+    run.result.residual = r.residual;
+    run.result.barrier = {contact.body.distance, contact.body.stiffness};
+    if (run.last_level()) {
+        if (run.stopped || run.iterations_left <= 0)
+            run.result.status = DrapeStatus::limit;
+        else if (r.end == SettleEnd::settled && problem.widened() == 0)
+            run.result.status = DrapeStatus::converged;
+        else
+            run.result.status = DrapeStatus::stalled;
+        if (run.result.status != DrapeStatus::converged) note_where(run, problem, r);
+        if (problem.widened() > 0)
+            run.result.warnings.push_back(
+                text("%d triangles are stretched beyond their fabric's limit", problem.widened()));
+    }
+    const double s = std::chrono::duration<double>(Clock::now() - start).count();
+    run.result.levels.back().seconds += s;
+    run.result.seconds.push_back({text("settle %g mm", 1e3 * run.flat.levels[run.level].edge_length), s});
+}
+
+/// What the promises that a residual does not show have come to.
+void prove(Run& run) {
+    for (const auto& [label, height] : label_heights(run.garment, run.x)) {
+        const double drop = run.carried_at[label] - height;
+        if (drop < slid) continue;
+        run.result.status = DrapeStatus::slid_off;
+        run.result.where = text("edges labelled \"%s\" slid %.0f cm down from their place at %.2f m", label.c_str(),
+                                100 * drop, run.carried_at[label]);
+    }
+    if (run.result.status != DrapeStatus::converged) return;
+    const IntersectionCount n = count_intersections(node_triangles(run.garment), run.x, run.body);
+    if (n.cloth_avatar + n.cloth_cloth == 0) return;
+    run.result.status = DrapeStatus::stalled;
+    run.result.where = text("%d triangle pairs of cloth and body and %d of cloth and cloth cross", n.cloth_avatar,
+                            n.cloth_cloth);
 }
 
 } // namespace
@@ -59,122 +411,36 @@ const char* to_string(DrapeStatus s) {
 
 DrapeResult drape(const Pattern& pattern, const FlatPattern& flat, const Avatar& avatar, const PanelFabrics& fabrics,
                   const DrapeOptions& options) {
-    DrapeResult result;
-    result.tolerance = options.tolerance;
-    double density = 0;
-    for (const Fabric& f : fabrics) density = std::max(density, f.density);
-    double mu = options.friction;
-    if (mu < 0) for (const Fabric& f : fabrics) mu = std::max(mu, f.friction);
-    result.friction = mu;
-    const int levels = int(flat.levels.size());
-
-    // Sew the coarsest level.
-    Points x;
-    Garment closed;
-    {
-        const auto start = Clock::now();
-        const FlatLevel& level = flat.levels[0];
-        const Garment open = sew(pattern, level);
-        x = place(pattern, level);
-        ContactOptions co = contact_options(std::max(options.clearance, 0.06 * level.edge_length), density);
-        co.self = false;
-        ClothProblem problem(open, fabrics, avatar.body, co);
-        problem.sheet().softness = 1.0 / 16;
-        for (const Stitch& s : open.stitches)
-            problem.stitches.push_back({s.a, s.b, s.r, 500 * s.length, 6 * s.length});
-        Cholesky factor;
-        SettleOptions so;
-        so.tolerance = 1e-2;
-        so.max_iterations = 6;
-        so.exact_below = 0;
-        double last = 1e9;
-        int its = 0;
-        for (int round = 0; round < 100; ++round) {
-            so.time_step = std::min(0.02 * std::pow(2.0, round / 3), 1.0);
-            const SettleResult r = settle(problem, x, factor, so);
-            its += r.iterations;
-            const double gap = largest_gap(open, x);
-            if (talk()) std::fprintf(stderr, "sew %d gap %.5f residual %.3g energy %.5g it %d (%.2f s)\n", round, gap, r.residual, r.energy, its, since(start));
-            if (talk() && round % 10 == 9) {
-                int bad = 0; double most = 0;
-                for (int i = 0; i < int(open.stitches.size()); ++i) { double d = (x[open.stitches[i].a] - x[open.stitches[i].b[0]]).norm(); if (d > most) { most = d; bad = i; } }
-                const Stitch& st = open.stitches[bad];
-                std::fprintf(stderr, "   widest: %s at %.3f %.3f %.3f to %.3f %.3f %.3f; blocking pair %d", pattern.seams[st.seam].name.c_str(), x[st.a].x(), x[st.a].y(), x[st.a].z(), x[st.b[0]].x(), x[st.b[0]].y(), x[st.b[0]].z(), problem.blocking_pair());
-                if (problem.blocking_pair() >= 0) { const ContactPair& cp = problem.contact().pair(problem.blocking_pair()); const Vec3 q = cp.p[0] < open.node_count ? x[cp.p[0]] : problem.contact().body()[cp.p[0] - open.node_count]; std::fprintf(stderr, " ee %d body %d at %.3f %.3f %.3f", int(cp.edge_edge), int(cp.with_body), q.x(), q.y(), q.z()); }
-                std::fprintf(stderr, "\n");
-            }
-            if (gap < 2e-4) break;
-            if (gap < 0.01) for (auto& s : problem.stitches) s.stiffness = std::min(3 * s.stiffness, 1e5 * s.cap / 6);
-            if (gap > 0.9 * last) for (auto& s : problem.stitches) s.cap *= 1.5;
-            last = gap;
-        }
-        std::vector<int> map;
-        closed = close_seams(open, &map);
-        Points merged(closed.node_count, Vec3::Zero());
-        std::vector<int> count(closed.node_count, 0);
-        for (std::size_t i = 0; i < x.size(); ++i) { merged[map[i]] += x[i]; ++count[map[i]]; }
-        for (int i = 0; i < closed.node_count; ++i) merged[i] /= count[i];
-        x = merged;
-        result.seconds.push_back({"sew", since(start)});
-        result.levels.push_back({level.edge_length, int(level.points.size()), its, its, since(start)});
+    Run run{.pattern = pattern, .flat = flat, .body = avatar.body, .fabrics = fabrics, .options = options};
+    run.result.tolerance = options.tolerance;
+    run.result.friction = options.friction;
+    run.iterations_left = options.max_iterations;
+    for (const Fabric& f : fabrics) {
+        run.density = std::max(run.density, f.density);
+        if (options.friction < 0) run.result.friction = std::max(run.result.friction, f.friction);
     }
 
-    for (int l = 0; l < levels; ++l) {
-        const auto start = Clock::now();
-        const FlatLevel& level = flat.levels[l];
-        if (l > 0) {
-            const Garment coarse = closed;
-            closed = close_seams(sew(pattern, level));
-            Points fine(closed.node_count, Vec3::Zero());
-            std::vector<int> count(closed.node_count, 0);
-            for (std::size_t v = 0; v < level.points.size(); ++v) {
-                const Interpolation& p = flat.prolongation[l - 1][v];
-                Vec3 q = Vec3::Zero();
-                for (int k = 0; k < 3; ++k) q += p.weight[k] * x[coarse.node_of_vertex[p.from[k]]];
-                fine[closed.node_of_vertex[v]] += q;
-                ++count[closed.node_of_vertex[v]];
-            }
-            for (int i = 0; i < closed.node_count; ++i) fine[i] /= count[i];
-            x = fine;
-            result.levels.push_back({level.edge_length, int(level.points.size()), 0, 0, 0});
+    if (!options.from.empty()) {
+        run.level = run.levels() - 1;
+        run.garment = close_seams(sew(pattern, flat.levels.back()));
+        run.x = options.from;
+        run.carried_at = label_heights(run.garment, place(pattern, flat.levels.back()));
+        run.result.levels.push_back({flat.levels.back().edge_length, int(flat.levels.back().points.size()), 0, 0, 0});
+        settle_level(run);
+    } else {
+        sew_coarsest(run);
+        settle_level(run);
+        while (!run.last_level() && !run.stopped) {
+            ++run.level;
+            refine(run);
+            settle_level(run);
         }
-        const bool last = l + 1 == levels;
-        ContactOptions co = contact_options(last ? options.clearance : std::max(options.clearance, 0.06 * level.edge_length), density);
-        ClothProblem problem(closed, fabrics, avatar.body, co);
-        problem.gravity = options.gravity;
-        problem.rest_here(x, mu);
-        if (talk()) {
-            auto ic = count_intersections(node_triangles(closed), x, avatar.body);
-            std::fprintf(stderr, "level %d: %d nodes, start violations %d, crossings %d %d\n", l, closed.node_count, problem.contact().violations(x), ic.cloth_avatar, ic.cloth_cloth);
-        }
-        Cholesky factor;
-        SettleOptions so;
-        so.progress = [&](int it, double r) {
-            if (talk()) std::fprintf(stderr, "  it %d residual %.4g\n", it, r);
-            return true;
-        };
-        const double softness[3] = {1.0 / 16, 1.0 / 4, 1};
-        for (int s = l == 0 ? 0 : 1; s < 3; ++s) {
-            problem.sheet().softness = softness[s];
-            so.tolerance = last && s == 2 ? options.tolerance : 1;
-            so.max_iterations = s == 1 && l > 0 ? 8 : last && s == 2 ? 400 : 100;
-            so.exact_below = s == 2 ? 20 : 0;
-            if (s == 2) problem.limit_strain(x);
-            const SettleResult r = settle(problem, x, factor, so);
-            result.levels.back().iterations += r.iterations;
-            result.levels.back().factorisations += r.factorisations;
-            result.residual = r.residual;
-            if (talk()) std::fprintf(stderr, "settle level %d soft %g: end %d residual %.3g energy %.6g its %d fac %d cg %d widened %d (%.2f s)\n", l, softness[s], int(r.end), r.residual, r.energy, r.iterations, r.factorisations, r.conjugate_gradients, problem.widened(), since(start));
-            if (last && s == 2 && r.end == SettleEnd::settled) result.status = DrapeStatus::converged;
-        }
-        result.levels.back().seconds += since(start);
-        result.seconds.push_back({"settle", since(start)});
-        result.barrier = {co.body.distance, co.body.stiffness};
     }
-    result.garment = closed;
-    result.state.positions = x;
-    (void)total_area;
-    return result;
+    if (run.stopped) run.result.status = DrapeStatus::limit;
+    prove(run);
+    run.result.garment = std::move(run.garment);
+    run.result.state.positions = std::move(run.x);
+    return std::move(run.result);
 }
 
 } // namespace toile

@@ -105,6 +105,13 @@ inline Points points_of(const Eigen::VectorXd& q, int nodes) {
     return x;
 }
 
+inline bool positive_definite(const Eigen::SparseMatrix<double>& matrix) {
+    Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>> solver;
+    solver.cholmod().print = 0;
+    solver.compute(matrix);
+    return solver.info() == Eigen::Success;
+}
+
 /// Minimum of the terms minus load . q near `start`.
 inline StaticResult solve_static(const std::vector<Term>& terms, const Eigen::VectorXd& load,
                                  const Freedoms& freedoms, const Eigen::VectorXd& start,
@@ -121,6 +128,7 @@ inline StaticResult solve_static(const std::vector<Term>& terms, const Eigen::Ve
     const double scale = std::max(load.cwiseAbs().maxCoeff(), 1e-300);
     double shift = 0, current = energy(y);
     Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>> solver;
+    solver.cholmod().print = 0; // it reports what is asked of it on purpose: whether a matrix is positive
     bool analysed = false;
     for (; result.iterations <= options.max_iterations; ++result.iterations) {
         const Eigen::VectorXd q = freedoms.expand(y);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <tuple>
@@ -81,40 +82,99 @@ Grid sample(const Field& field, const Eigen::AlignedBox3d& box, double cell) {
     return fine;
 }
 
-/// Mean of the places where the field changes sign on the cell's edges; false when it does not.
-bool cell_point(const Grid& grid, int i, int j, int k, Vec3& point) {
-    static constexpr int edges[12][2] = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3},
-                                         {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
-    double value[8];
-    for (int c = 0; c < 8; ++c) value[c] = grid.value[grid.index(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2))];
-    Vec3 sum = Vec3::Zero();
-    int count = 0;
-    for (const auto& e : edges) {
-        const double a = value[e[0]], b = value[e[1]];
-        if ((a < 0) == (b < 0)) continue;
-        const Vec3 p(e[0] & 1, e[0] >> 1 & 1, e[0] >> 2), q(e[1] & 1, e[1] >> 1 & 1, e[1] >> 2);
-        sum += p + a / (a - b) * (q - p);
-        ++count;
-    }
-    if (count == 0) return false;
-    point = grid.point(i, j, k) + grid.cell * sum / count;
-    return true;
+// A cell's corner c lies at (c & 1, c >> 1 & 1, c >> 2); edge 4 a + n runs along axis a.
+constexpr int edge_ends[12][2] = {{0, 1}, {2, 3}, {4, 5}, {6, 7}, {0, 2}, {1, 3},
+                                  {4, 6}, {5, 7}, {0, 4}, {1, 5}, {2, 6}, {3, 7}};
+// A face's corners in turn, and the edges between them.
+constexpr int face_corners[6][4] = {{0, 2, 6, 4}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 3, 7, 6}, {0, 1, 3, 2}, {4, 5, 7, 6}};
+constexpr int face_edges[6][4] = {{4, 10, 6, 8}, {5, 11, 7, 9}, {0, 9, 2, 8}, {1, 11, 3, 10}, {0, 5, 1, 4}, {2, 7, 3, 6}};
+
+/// The sheets of the surface in one cell: which of them cuts each edge (-1: none), and a point for each.
+struct CellSheets {
+    std::array<int, 12> of_edge;
+    std::vector<Vec3> points; ///< in cells from the cell's corner 0
+};
+
+void join(std::array<int, 12>& group, int a, int b) {
+    const int from = group[b], to = group[a];
+    for (int& g : group)
+        if (g == from) g = to;
 }
 
-/// One point per cell that the surface passes, one quad per grid edge that it cuts.
+/// Two cuts on a face belong to one sheet. Four can be paired in two ways; the mean of the face's corners decides,
+/// on both sides of the face alike.
+void join_on_face(const double (&value)[8], int face, std::array<int, 12>& group) {
+    const auto& corners = face_corners[face];
+    const auto& edges = face_edges[face]; // edge k lies between corners k and k + 1
+    int cut[4], count = 0;
+    for (int k = 0; k < 4; ++k)
+        if (group[edges[k]] >= 0) cut[count++] = k;
+    if (count == 2) join(group, edges[cut[0]], edges[cut[1]]);
+    if (count != 4) return;
+    const bool middle_inside = value[corners[0]] + value[corners[1]] + value[corners[2]] + value[corners[3]] < 0;
+    // Corners unlike the middle are cut off, each by the pair of edges at it.
+    for (int k = 0; k < 4; ++k)
+        if ((value[corners[k]] < 0) != middle_inside) join(group, edges[(k + 3) % 4], edges[k]);
+}
+
+/// Sheets of a cell from its corners' values; each one's point is the mean of the places where it cuts edges.
+CellSheets sheets_of(const double (&value)[8]) {
+    std::array<int, 12> group;
+    for (int e = 0; e < 12; ++e)
+        group[e] = (value[edge_ends[e][0]] < 0) != (value[edge_ends[e][1]] < 0) ? e : -1;
+    for (int face = 0; face < 6; ++face) join_on_face(value, face, group);
+    CellSheets sheets;
+    sheets.of_edge.fill(-1);
+    for (int g = 0; g < 12; ++g) {
+        Vec3 sum = Vec3::Zero();
+        int count = 0;
+        for (int e = 0; e < 12; ++e) {
+            if (group[e] != g) continue;
+            const auto [c, d] = edge_ends[e];
+            const Vec3 p(c & 1, c >> 1 & 1, c >> 2), q(d & 1, d >> 1 & 1, d >> 2);
+            sum += p + value[c] / (value[c] - value[d]) * (q - p);
+            sheets.of_edge[e] = int(sheets.points.size());
+            ++count;
+        }
+        if (count > 0) sheets.points.push_back(sum / count);
+    }
+    return sheets;
+}
+
+/// One point per sheet of the surface in a cell, one quad per grid edge that it cuts.
 TriMesh surface_net(const Grid& grid) {
     TriMesh mesh;
     const auto [nx, ny, nz] = grid.corners;
-    std::vector<int> point_of_cell(grid.value.size(), -1);
+    std::vector<int> active(grid.value.size(), -1);
+    std::vector<std::array<int, 12>> point_at; // of an active cell, by edge
     for (int k = 0; k + 1 < nz; ++k)
         for (int j = 0; j + 1 < ny; ++j)
-            for (int i = 0; i + 1 < nx; ++i)
-                if (Vec3 p; cell_point(grid, i, j, k, p)) {
-                    point_of_cell[grid.index(i, j, k)] = int(mesh.points.size());
-                    mesh.points.push_back(p);
+            for (int i = 0; i + 1 < nx; ++i) {
+                double value[8];
+                int inside = 0;
+                for (int c = 0; c < 8; ++c) {
+                    value[c] = grid.value[grid.index(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2))];
+                    inside += value[c] < 0;
                 }
-    const auto add_quad = [&](std::array<int, 4> q, bool flip) {
-        for (int& c : q) c = point_of_cell[c];
+                if (inside == 0 || inside == 8) continue;
+                CellSheets sheets = sheets_of(value);
+                for (int& s : sheets.of_edge)
+                    if (s >= 0) s += int(mesh.points.size());
+                for (const Vec3& p : sheets.points) mesh.points.push_back(grid.point(i, j, k) + grid.cell * p);
+                active[grid.index(i, j, k)] = int(point_at.size());
+                point_at.push_back(sheets.of_edge);
+            }
+    // The quad round the edge from corner (i, j, k) along `axis`: its four cells, and which of their edges it is.
+    const std::array<int, 3> step{1, nx, nx * ny};
+    const auto add_quad = [&](int corner, int axis, bool flip) {
+        const int u = step[(axis + 1) % 3], v = step[(axis + 2) % 3];
+        const int ubit = 1 << (axis + 1) % 3, vbit = 1 << (axis + 2) % 3;
+        const std::array<int, 4> cells{corner - u - v, corner - v, corner, corner - u};
+        const std::array<int, 4> at{ubit | vbit, vbit, 0, ubit}; // the edge's first corner in each cell
+        std::array<int, 4> q;
+        for (int c = 0; c < 4; ++c)
+            for (int e = 4 * axis; e < 4 * axis + 4; ++e)
+                if (edge_ends[e][0] == at[c]) q[c] = point_at[active[cells[c]]][e];
         if (flip) std::swap(q[1], q[3]);
         const Points& p = mesh.points;
         if ((p[q[0]] - p[q[2]]).squaredNorm() <= (p[q[1]] - p[q[3]]).squaredNorm()) {
@@ -128,14 +188,11 @@ TriMesh surface_net(const Grid& grid) {
     for (int k = 1; k + 1 < nz; ++k)
         for (int j = 1; j + 1 < ny; ++j)
             for (int i = 1; i + 1 < nx; ++i) {
-                const bool inside = grid.value[grid.index(i, j, k)] < 0;
-                const int c = grid.index(i, j, k), dx = 1, dy = nx, dz = nx * ny;
-                if (inside != (grid.value[grid.index(i + 1, j, k)] < 0))
-                    add_quad({c - dy - dz, c - dz, c, c - dy}, !inside);
-                if (inside != (grid.value[grid.index(i, j + 1, k)] < 0))
-                    add_quad({c - dx - dz, c - dx, c, c - dz}, !inside);
-                if (inside != (grid.value[grid.index(i, j, k + 1)] < 0))
-                    add_quad({c - dx - dy, c - dy, c, c - dx}, !inside);
+                const int c = grid.index(i, j, k);
+                for (int axis = 0; axis < 3; ++axis) {
+                    const bool here = grid.value[c] < 0, there = grid.value[c + step[axis]] < 0;
+                    if (here != there) add_quad(c, axis, !here);
+                }
             }
     return mesh;
 }
@@ -224,13 +281,37 @@ int turn_edges(TriMesh& mesh) {
     return turned;
 }
 
-/// Where the surface runs along a grid's diagonals, rounding lets a cell have two sheets that share its one point.
-/// Another position and size of the grid has others.
+/// Joins the ends of edges shorter than `shortest`, where that keeps the surface a surface: ends with exactly two
+/// common neighbours. A point takes part in one change.
+void collapse_short_edges(TriMesh& mesh, double shortest) {
+    const std::vector<std::vector<int>> ring = rings(mesh);
+    std::vector<bool> touched(mesh.points.size(), false);
+    std::vector<int> stays(mesh.points.size());
+    for (int i = 0; i < int(stays.size()); ++i) stays[i] = i;
+    for (int a = 0; a < int(mesh.points.size()); ++a)
+        for (int b : ring[a]) {
+            if (b < a || touched[a] || touched[b] || (mesh.points[a] - mesh.points[b]).norm() > shortest) continue;
+            std::vector<int> common;
+            std::set_intersection(ring[a].begin(), ring[a].end(), ring[b].begin(), ring[b].end(),
+                                  std::back_inserter(common));
+            if (common.size() != 2 || ring[common[0]].size() < 4 || ring[common[1]].size() < 4) continue;
+            mesh.points[a] = 0.5 * (mesh.points[a] + mesh.points[b]);
+            stays[b] = a;
+            for (int n : ring[a]) touched[n] = true;
+            for (int n : ring[b]) touched[n] = true;
+        }
+    for (Triangle& t : mesh.triangles)
+        for (int& corner : t) corner = stays[corner];
+    std::erase_if(mesh.triangles, [](const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+    drop_unused_points(mesh);
+}
+
+/// Two cells that each have both pairs of cuts of their common face on one sheet meet in an edge of four triangles.
+/// It is rare, and another position of the grid has others.
 TriMesh manifold_net(const Field& field, const Eigen::AlignedBox3d& box, double cell) {
     for (int attempt = 0; attempt < 8; ++attempt) {
-        const double size = cell * (1 - 0.04 * attempt);
-        const Vec3 shift = attempt * size * Vec3(0, 0.37, 0.21);
-        TriMesh mesh = surface_net(sample(field, {box.min() - shift, box.max() - shift}, size));
+        const Vec3 shift = attempt * cell * Vec3(0, 0.37, 0.21);
+        TriMesh mesh = surface_net(sample(field, {box.min() - shift, box.max() - shift}, cell));
         if (crowded_edges(mesh) == 0) return mesh;
     }
     throw std::runtime_error("isosurface: the surface is finer than the grid of " + std::to_string(cell) + " m");
@@ -243,6 +324,7 @@ TriMesh isosurface(const Field& field, const Eigen::AlignedBox3d& box, const Iso
     TriMesh mesh = manifold_net(field, box, options.cell);
     for (int round = 0; round < options.relaxations; ++round) {
         relax(mesh, field, options.cell, 0.5);
+        collapse_short_edges(mesh, 0.4 * options.cell);
         for (int turns = 0; turns < 4 && turn_edges(mesh) > 0; ++turns) {}
     }
     relax(mesh, field, options.cell, 0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "io/read_pattern.h"
+#include "io/input_error.h"
 #include "sewing/avatar.h"
 
 #include <cstdint>

@@ -190,34 +190,37 @@ std::pair<double, double> nearest_on_edge(const Edge& edge, const Vec2& p) {
     return {t, distance(t)};
 }
 
-/// Inner lines that end on the outline, on a hole or on the inside of another line share a sample with it.
+bool same_line(const BorderPlan& plan, int a, int b) {
+    if (std::min(a, b) < 0 || std::max(a, b) >= int(plan.tracks.size())) return false;
+    const BorderTrack &s = plan.tracks[a], &t = plan.tracks[b];
+    return s.kind == BorderKind::line && t.kind == BorderKind::line && s.panel == t.panel && s.loop == t.loop;
+}
+
+/// An end of an inner line that lies on the outline, on a hole or on another line shares a sample with it. Of
+/// two lines that meet with their ends the later one attaches.
+void attach_line_end(BorderPlan& plan, int end_track, bool last) {
+    const BorderTrack& own = plan.tracks[end_track];
+    const Vec2 p = last ? own.edge.end : own.edge.start;
+    for (int k = plan.first_track[own.panel]; k < plan.first_track[own.panel + 1]; ++k) {
+        BorderTrack& other = plan.tracks[k];
+        if (same_line(plan, k, end_track)) continue;
+        const auto [t, distance] = nearest_on_edge(other.edge, p);
+        if (distance > touch) continue;
+        const bool at_end = (t == 0 && !same_line(plan, k - 1, k)) || (t == 1 && !same_line(plan, k, k + 1));
+        if (other.kind == BorderKind::line && other.loop > own.loop && at_end) continue;
+        const double near = touch / other.length;
+        const auto there = std::find_if(other.cuts.begin(), other.cuts.end(),
+                                        [&, t = t](double c) { return std::abs(c - t) <= near; });
+        plan.line_ends.push_back({end_track, last, k, there != other.cuts.end() ? *there : cut(other, t)});
+        return;
+    }
+}
+
 void attach_lines(BorderPlan& plan) {
-    auto attach = [&](int end_track, bool last) {
-        const BorderTrack& own = plan.tracks[end_track];
-        const Vec2 p = last ? own.edge.end : own.edge.start;
-        for (int k = plan.first_track[own.panel]; k < plan.first_track[own.panel + 1]; ++k) {
-            BorderTrack& other = plan.tracks[k];
-            if (other.kind == BorderKind::line && other.loop >= own.loop)
-                break; // a line attaches to earlier ones
-            const auto [t, distance] = nearest_on_edge(other.edge, p);
-            if (distance > touch) continue;
-            const double near = touch / other.length;
-            auto there = std::find_if(other.cuts.begin(), other.cuts.end(),
-                                      [&, t = t](double c) { return std::abs(c - t) <= near; });
-            plan.line_ends.push_back(
-                {end_track, last, k, there != other.cuts.end() ? *there : cut(other, t)});
-            return;
-        }
-    };
     for (int k = 0; k < int(plan.tracks.size()); ++k) {
-        const BorderTrack& track = plan.tracks[k];
-        if (track.kind != BorderKind::line) continue;
-        auto same_line = [&](int other) {
-            return other >= 0 && other < int(plan.tracks.size()) && plan.tracks[other].panel == track.panel &&
-                   plan.tracks[other].kind == BorderKind::line && plan.tracks[other].loop == track.loop;
-        };
-        if (!same_line(k - 1)) attach(k, false);
-        if (!same_line(k + 1)) attach(k, true);
+        if (plan.tracks[k].kind != BorderKind::line) continue;
+        if (!same_line(plan, k - 1, k)) attach_line_end(plan, k, false);
+        if (!same_line(plan, k, k + 1)) attach_line_end(plan, k, true);
     }
 }
 
@@ -226,7 +229,7 @@ void make_intervals(BorderPlan& plan) {
         BorderTrack& track = plan.tracks[k];
         track.first_interval = int(plan.intervals.size());
         for (std::size_t c = 0; c + 1 < track.cuts.size(); ++c)
-            plan.intervals.push_back({k, track.cuts[c], track.cuts[c + 1], 0, false, {}});
+            plan.intervals.push_back({k, track.cuts[c], track.cuts[c + 1], 0, false, {}, {}});
     }
 }
 
@@ -386,21 +389,25 @@ void choose(BorderGroup& group, const Demand& demand, int levels) {
     }
 }
 
+/// `at`: fractions of the group's length, 0 .. 1; even ones are sampled in one go.
 void sample_interval(const BorderPlan& plan, BorderInterval& interval, bool even,
                      const std::vector<double>& at) {
     const Edge& edge = plan.tracks[interval.track].edge;
     const int n = int(at.size()) - 1;
+    interval.at.resize(n + 1);
+    for (int k = 0; k <= n; ++k) {
+        const double s = interval.reversed ? 1 - at[n - k] : at[k];
+        interval.at[k] = interval.t0 + s * (interval.t1 - interval.t0);
+    }
+    interval.at.front() = interval.t0, interval.at.back() = interval.t1;
     if (even) {
         interval.points = sample(edge, interval.t0, interval.t1, n);
         return;
     }
     interval.points = sample(edge, interval.t0, interval.t1, 1);
     interval.points.resize(n + 1, interval.points.back());
-    for (int k = 1; k < n; ++k) {
-        const double s = interval.reversed ? 1 - at[n - k] : at[k];
-        interval.points[k] =
-            sample(edge, interval.t0, interval.t0 + s * (interval.t1 - interval.t0), 1).back();
-    }
+    for (int k = 1; k < n; ++k)
+        interval.points[k] = sample(edge, interval.t0, interval.at[k], 1).back();
 }
 
 } // namespace

@@ -29,7 +29,8 @@ struct BorderInterval {
     double t0 = 0, t1 = 1;
     int group = 0;
     bool reversed = false;    ///< runs against the group's direction
-    std::vector<Vec2> points; ///< samples of the finest level, from t0 to t1
+    std::vector<double> at;   ///< samples of the finest level as fractions of the track, from t0 to t1
+    std::vector<Vec2> points; ///< where they lie
 };
 
 /// Intervals that seams connect, directly or in a chain. All carry the same number of segments at the same

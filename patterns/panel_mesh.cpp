@@ -206,7 +206,7 @@ PlanarMesh mesh_panel(const PanelBorder& border, double edge, const SizeAt& size
     for (const BorderSegment& s : border.segments)
         (s.outline ? outline : inner).push_back({s.a, s.b});
     PlanarMesh best;
-    double best_error = 1e300, scale = 0.99; // an irregular mesh's mean edge is a little above its lattice's
+    double best_error = 1e300, scale = 0.997; // an irregular mesh's mean edge is a little above its lattice's
     for (int attempt = 0; attempt < 4; ++attempt) {
         const double spacing = scale * edge;
         const SizeAt wanted = [&](const Vec2& p) { return spacing * (size ? size(p) : 1.0); };

@@ -34,54 +34,78 @@ std::vector<Vec2> points_at(const BorderPlan& plan, int interval, int level) {
     return out;
 }
 
-/// Fills one panel's border track by track. Consecutive edges share their corner; a closed loop's last point
-/// is its first; a line that ends on another edge shares that edge's point.
+/// Numbers the points of one panel's border in walking order. Consecutive edges share their corner; a closed
+/// loop's last point is its first; a line that ends on another edge shares that edge's point.
 class BorderBuilder {
 public:
     BorderBuilder(const BorderPlan& plan, int level, LevelBorders& out)
-        : plan_(plan), level_(level), out_(out) {}
+        : plan_(plan), level_(level), out_(out) {
+        for (const BorderTrack& track : plan.tracks)
+            point_at_cut_.emplace_back(track.cuts.size(), -1);
+    }
 
     void panel(int p) {
         border_ = &out_.panels[p];
-        for (int k = plan_.first_track[p]; k < plan_.first_track[p + 1];)
-            k = loop(k);
+        for (int k = plan_.first_track[p]; k < plan_.first_track[p + 1]; ++k)
+            for (int c = 0; c + 1 < int(plan_.tracks[k].cuts.size()); ++c)
+                interval(k, c);
     }
 
 private:
-    int loop(int first) {
-        const BorderTrack& head = plan_.tracks[first];
-        int end = first;
-        while (end < plan_.first_track[head.panel + 1] && plan_.tracks[end].kind == head.kind &&
-               plan_.tracks[end].loop == head.loop)
-            ++end;
-        const bool closed =
-            head.kind != BorderKind::line || plan_.tracks[end - 1].edge.end == head.edge.start;
-        const int start = attached(first, false).value_or_new(*this, head.edge.start);
-        int at = start;
-        for (int k = first; k < end; ++k) {
-            const bool final = k + 1 == end;
-            int stop = -1;
-            if (final) stop = closed ? start : attached(k, true).point;
-            at = track(k, at, stop);
-        }
-        return end;
+    void interval(int k, int c) {
+        const BorderTrack& track = plan_.tracks[k];
+        const int i = track.first_interval + c;
+        const std::vector<Vec2> points = points_at(plan_, i, level_);
+        std::vector<int>& ids = out_.of_interval[i];
+        ids.push_back(at_cut(k, c));
+        for (std::size_t j = 1; j + 1 < points.size(); ++j)
+            ids.push_back(add(points[j]));
+        ids.push_back(at_cut(k, c + 1));
+        for (std::size_t j = 0; j + 1 < ids.size(); ++j)
+            border_->segments.push_back({ids[j], ids[j + 1], i, track.kind != BorderKind::line});
     }
 
-    struct Attached {
-        int point = -1;
-        int value_or_new(BorderBuilder& b, const Vec2& p) const { return point >= 0 ? point : b.add(p); }
-    };
+    /// The point at cut c of track k, made when it is first asked for.
+    int at_cut(int k, int c) {
+        int& known = point_at_cut_[k][c];
+        if (known < 0) known = shared(k, c);
+        if (known < 0) known = add(place(k, c));
+        return known;
+    }
 
-    Attached attached(int k, bool last) {
-        for (const LineEnd& e : plan_.line_ends) {
-            if (e.track != k || e.last != last) continue;
-            const BorderTrack& on = plan_.tracks[e.on_track];
-            for (int i = 0; i + 1 < int(on.cuts.size()); ++i) {
-                if (on.cuts[i] == e.t) return {out_.of_interval[on.first_interval + i].front()};
-                if (on.cuts[i + 1] == e.t) return {out_.of_interval[on.first_interval + i].back()};
-            }
-        }
-        return {};
+    /// The point that an end of a track shares with another track; -1 when it is its own.
+    int shared(int k, int c) {
+        const BorderTrack& track = plan_.tracks[k];
+        const bool last = c + 1 == int(track.cuts.size());
+        if (!last && c > 0) return -1;
+        if (last && same_loop(k, k + 1)) return at_cut(k + 1, 0);
+        for (const LineEnd& e : plan_.line_ends)
+            if (e.track == k && e.last == last)
+                return at_cut(e.on_track, cut_at(plan_.tracks[e.on_track], e.t));
+        if (!last) return -1;
+        int first = k;
+        while (same_loop(first - 1, k))
+            --first;
+        const bool closed =
+            track.kind != BorderKind::line || track.edge.end == plan_.tracks[first].edge.start;
+        return closed ? at_cut(first, 0) : -1;
+    }
+
+    bool same_loop(int a, int b) const {
+        if (std::min(a, b) < 0 || std::max(a, b) >= int(plan_.tracks.size())) return false;
+        const BorderTrack &s = plan_.tracks[a], &t = plan_.tracks[b];
+        return s.panel == t.panel && s.kind == t.kind && s.loop == t.loop;
+    }
+
+    static int cut_at(const BorderTrack& track, double t) {
+        return int(std::lower_bound(track.cuts.begin(), track.cuts.end(), t) - track.cuts.begin());
+    }
+
+    Vec2 place(int k, int c) const {
+        const BorderTrack& track = plan_.tracks[k];
+        const bool last = c + 1 == int(track.cuts.size());
+        const std::vector<Vec2>& points = plan_.intervals[track.first_interval + c - last].points;
+        return last ? points.back() : points.front();
     }
 
     int add(const Vec2& p) {
@@ -89,30 +113,11 @@ private:
         return int(border_->points.size()) - 1;
     }
 
-    /// Samples a track from point `from`; its last point is `stop`, or a new one when that is -1. Returns the
-    /// last.
-    int track(int k, int from, int stop) {
-        const BorderTrack& track = plan_.tracks[k];
-        const int intervals = int(track.cuts.size()) - 1;
-        for (int c = 0; c < intervals; ++c) {
-            const int i = track.first_interval + c;
-            const std::vector<Vec2> points = points_at(plan_, i, level_);
-            std::vector<int>& ids = out_.of_interval[i];
-            ids.push_back(from);
-            for (std::size_t j = 1; j < points.size(); ++j) {
-                const bool last = c + 1 == intervals && j + 1 == points.size();
-                ids.push_back(last && stop >= 0 ? stop : add(points[j]));
-                border_->segments.push_back({from, ids.back(), i, track.kind != BorderKind::line});
-                from = ids.back();
-            }
-        }
-        return from;
-    }
-
     const BorderPlan& plan_;
     int level_;
     LevelBorders& out_;
     PanelBorder* border_ = nullptr;
+    std::vector<std::vector<int>> point_at_cut_; ///< per track and cut; -1: not made yet
 };
 
 LevelBorders make_borders(const Pattern& pattern, const BorderPlan& plan, const TriangulateOptions& options,
@@ -373,6 +378,33 @@ void open_panel(const Pattern& pattern, const BorderPlan& plan, int panel, Plana
     });
 }
 
+/// The points along outlines and inner lines, panel points being numbered from offset[panel].
+void name_borders(const Pattern& pattern, const BorderPlan& plan, const LevelBorders& borders,
+                  const std::vector<int>& offset, FlatLevel& level) {
+    for (const Panel& panel : pattern.panels) {
+        level.border.emplace_back(panel.outline.size());
+        level.border_at.emplace_back(panel.outline.size());
+        level.lines.emplace_back(panel.lines.size());
+    }
+    for (const BorderTrack& track : plan.tracks) {
+        if (track.kind == BorderKind::hole) continue;
+        const bool line = track.kind == BorderKind::line;
+        std::vector<int>& out =
+            line ? level.lines[track.panel][track.loop] : level.border[track.panel][track.index];
+        for (int c = 0; c + 1 < int(track.cuts.size()); ++c) {
+            const int i = track.first_interval + c;
+            const std::vector<int>& ids = borders.of_interval[i];
+            const std::size_t step = (plan.intervals[i].at.size() - 1) / (ids.size() - 1);
+            for (std::size_t k = 0; k < ids.size(); ++k) {
+                if (!out.empty() && out.back() == offset[track.panel] + ids[k]) continue;
+                out.push_back(offset[track.panel] + ids[k]);
+                if (!line)
+                    level.border_at[track.panel][track.index].push_back(plan.intervals[i].at[k * step]);
+            }
+        }
+    }
+}
+
 FlatLevel assemble(const Pattern& pattern, const BorderPlan& plan, const LevelBorders& borders,
                    const std::vector<PlanarMesh>& meshes) {
     FlatLevel level;
@@ -390,21 +422,7 @@ FlatLevel assemble(const Pattern& pattern, const BorderPlan& plan, const LevelBo
         level.panel_of_triangle.insert(level.panel_of_triangle.end(), meshes[p].triangles.size(), p);
         offset.push_back(int(level.points.size()));
     }
-    level.border.resize(pattern.panels.size());
-    level.lines.resize(pattern.panels.size());
-    for (std::size_t p = 0; p < pattern.panels.size(); ++p) {
-        level.border[p].resize(pattern.panels[p].outline.size());
-        level.lines[p].resize(pattern.panels[p].lines.size());
-    }
-    for (const BorderTrack& track : plan.tracks) {
-        if (track.kind == BorderKind::hole) continue;
-        std::vector<int>& out = track.kind == BorderKind::outline ? level.border[track.panel][track.index]
-                                                                  : level.lines[track.panel][track.loop];
-        for (int c = 0; c + 1 < int(track.cuts.size()); ++c)
-            for (int id : borders.of_interval[track.first_interval + c])
-                if (out.empty() || out.back() != offset[track.panel] + id)
-                    out.push_back(offset[track.panel] + id);
-    }
+    name_borders(pattern, plan, borders, offset, level);
     for (const auto& seam : plan.seams) {
         level.sewn.push_back(sewn_segments(plan, seam, borders, offset));
         level.stitches.push_back(stitches_of(level.sewn.back()));

@@ -29,6 +29,8 @@ struct FlatLevel {
     std::vector<int> panel_of_triangle;
     /// Vertices along outline edge e of panel p, from the edge's start to its end: border[p][e].
     std::vector<std::vector<std::vector<int>>> border;
+    /// The same places as fractions of the edge's arc length, 0 .. 1.
+    std::vector<std::vector<std::vector<double>>> border_at;
     /// Vertices of seam s that are sewn to each other, in the order of its sides: stitches[s][k] = {a, b}.
     /// A dart's tip, sewn to itself, is left out.
     std::vector<std::vector<std::array<int, 2>>> stitches;

@@ -135,6 +135,18 @@ void refuse_collapse(const Garment& g) {
 
 } // namespace
 
+std::vector<int> vertices_along(const Garment& garment, const EdgeSpan& span) {
+    const double low = std::min(span.t0, span.t1) - 1e-9, high = std::max(span.t0, span.t1) + 1e-9;
+    std::vector<int> out;
+    for (const BorderLine& line : garment.borders) {
+        if (line.panel != span.panel || line.edge != span.edge) continue;
+        for (std::size_t k = 0; k < line.vertices.size(); ++k)
+            if (line.at[k] > low && line.at[k] < high) out.push_back(line.vertices[k]);
+    }
+    if (span.t1 < span.t0) std::reverse(out.begin(), out.end());
+    return out;
+}
+
 Garment sew(const Pattern& pattern, const FlatLevel& flat) {
     Garment g;
     for (std::size_t v = 0; v < flat.points.size(); ++v)
@@ -160,7 +172,8 @@ Garment sew(const Pattern& pattern, const FlatLevel& flat) {
     mark_seams(pattern, flat, g);
     for (int p = 0; p < int(flat.border.size()); ++p)
         for (int e = 0; e < int(flat.border[p].size()); ++e)
-            g.borders.push_back({pattern.panels[p].outline[e].label, p, e, flat.border[p][e]});
+            g.borders.push_back(
+                {pattern.panels[p].outline[e].label, p, e, flat.border[p][e], flat.border_at[p][e]});
     return g;
 }
 

@@ -11,7 +11,7 @@ namespace toile {
 /// What the cloth wants to be: per triangle its two edge vectors flat, per edge the angle it wants to be bent
 /// by. Not a rest position per vertex: a moulded cup or an eased seam has none.
 struct RestShape {
-    std::vector<Mat2> edges;    ///< columns: corner 1 - corner 0, corner 2 - corner 0; rows: weft, warp; metres
+    std::vector<Mat2> edges; ///< columns: corner 1 - corner 0, corner 2 - corner 0; rows: weft, warp; metres
     std::vector<double> angles; ///< rad, one per entry of Garment::edges; 0 is flat
 };
 
@@ -29,13 +29,14 @@ struct BorderLine {
     std::string label;
     int panel = 0, edge = 0;
     std::vector<int> vertices; ///< in order along the edge
+    std::vector<double> at;    ///< where they lie, as fractions of the edge's length
 };
 
 struct Garment {
     // The cut cloth, by vertex and triangle.
-    std::vector<Vec2> uv;               ///< grain coordinates (weft, warp) in metres
+    std::vector<Vec2> uv; ///< grain coordinates (weft, warp) in metres
     std::vector<int> panel_of_vertex;
-    std::vector<Triangle> triangles;    ///< over vertices; front is the fabric's right side
+    std::vector<Triangle> triangles; ///< over vertices; front is the fabric's right side
     std::vector<int> panel_of_triangle;
     std::vector<std::string> panel_names;
     std::vector<std::string> panel_fabrics; ///< empty: the garment's
@@ -45,11 +46,11 @@ struct Garment {
     // The cloth in space, by node.
     std::vector<int> node_of_vertex;
     int node_count = 0;
-    EdgeTable edges;                    ///< over nodes
-    std::vector<Stitch> stitches;       ///< open seams, over nodes
-    std::vector<bool> seam_edge;        ///< per edge: lies on a seam (closed or open) or dart
-    std::vector<bool> eased_triangle;   ///< per triangle: touches a seam whose sides differ by more than 2 %
-    std::vector<BorderLine> borders;    ///< every outline edge of every panel
+    EdgeTable edges;                  ///< over nodes
+    std::vector<Stitch> stitches;     ///< open seams, over nodes
+    std::vector<bool> seam_edge;      ///< per edge: lies on a seam (closed or open) or dart
+    std::vector<bool> eased_triangle; ///< per triangle: touches a seam whose sides differ by more than 2 %
+    std::vector<BorderLine> borders;  ///< every outline edge of every panel
 
     /// Triangle t over nodes.
     Triangle nodes(int t) const {
@@ -57,6 +58,10 @@ struct Garment {
         return {node_of_vertex[v[0]], node_of_vertex[v[1]], node_of_vertex[v[2]]};
     }
 };
+
+/// Vertices of the garment along a span of an outline, from t0 to t1. Spans of seams, pins and elastics end
+/// exactly in vertices; of others, the vertices inside are returned.
+std::vector<int> vertices_along(const Garment& garment, const EdgeSpan& span);
 
 /// The garment of one level, every seam open: one node per vertex, stitches across the seams.
 Garment sew(const Pattern& pattern, const FlatLevel& flat);
@@ -68,7 +73,8 @@ Garment close_seams(const Garment& garment, std::vector<int>* node_map = nullptr
 /// Triangles over nodes with the given positions.
 inline std::vector<Triangle> node_triangles(const Garment& garment) {
     std::vector<Triangle> triangles;
-    for (std::size_t t = 0; t < garment.triangles.size(); ++t) triangles.push_back(garment.nodes(int(t)));
+    for (std::size_t t = 0; t < garment.triangles.size(); ++t)
+        triangles.push_back(garment.nodes(int(t)));
     return triangles;
 }
 

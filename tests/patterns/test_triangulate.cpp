@@ -227,6 +227,61 @@ TEST_CASE("counts agree along chains of seams") {
     CHECK(level.border[2][2].size() == level.border[3][0].size());
 }
 
+TEST_CASE("random seams of random spans, overlapping ones too, are matched or refused") {
+    Random random(11);
+    int made = 0;
+    for (int trial = 0; trial < 80; ++trial) {
+        CAPTURE(trial);
+        Pattern pattern;
+        const int panels = 3 + random.below(4);
+        for (int p = 0; p < panels; ++p)
+            pattern.panels.push_back(
+                rectangle("p" + std::to_string(p), random.in(0.05, 0.6), random.in(0.05, 0.6)));
+        auto side = [&] {
+            SeamSide out;
+            const int spans = 1 + random.below(3);
+            for (int k = 0; k < spans; ++k) {
+                const double t0 = random.below(5) / 4.0;
+                double t1 = random.below(2) ? random.unit() : random.below(5) / 4.0;
+                if (std::abs(t1 - t0) < 0.1) t1 = t0 > 0.5 ? 0 : 1;
+                out.push_back({random.below(panels), random.below(4), t0, t1});
+            }
+            return out;
+        };
+        for (int s = 0; s < 4; ++s)
+            pattern.seams.push_back(seam("seam " + std::to_string(s), side(), side()));
+        FlatPattern flat;
+        try {
+            flat = triangulate(pattern, at(0.02, 2));
+        } catch (const std::runtime_error& e) {
+            CHECK_THAT(e.what(), Catch::Contains("seam"));
+            continue;
+        }
+        ++made;
+        for (const FlatLevel& level : flat.levels) {
+            check_sound(pattern, level);
+            for (std::size_t s = 0; s < 4; ++s) {
+                double walked_a = 0, walked_b = 0, a = 0, b = 0;
+                auto length_of = [&](const std::array<int, 2>& e) {
+                    return (level.points[e[1]] - level.points[e[0]]).norm();
+                };
+                for (const SewnSegment& segment : level.sewn[s])
+                    a += length_of(segment.a), b += length_of(segment.b);
+                for (const EdgeSpan& span : pattern.seams[s].a)
+                    walked_a +=
+                        std::abs(span.t1 - span.t0) * length(pattern.panels[span.panel].outline[span.edge]);
+                CHECK(a == Approx(walked_a)); // the whole side is sewn
+                walked_a = 0;
+                for (const SewnSegment& segment : level.sewn[s]) {
+                    walked_a += length_of(segment.a), walked_b += length_of(segment.b);
+                    CHECK(std::abs(walked_a / a - walked_b / b) < 4 * 0.003 / std::max(a, b)); // ease is even
+                }
+            }
+        }
+    }
+    CHECK(made > 40);
+}
+
 TEST_CASE("overlapping seams on one edge join three layers") {
     Pattern pattern;
     pattern.panels = {rectangle("shell", 0.4, 0.2), rectangle("lining", 0.4, 0.2),
@@ -358,6 +413,41 @@ TEST_CASE("holes stay open and inner lines are edges of the mesh") {
     }
 }
 
+TEST_CASE("inner lines may end on each other in any order") {
+    // A pinwheel: each line starts on the next-to-last stretch of the one before, the first one on the last.
+    const bool cornered = GENERATE(false, true); // lines of two edges that meet where the next line starts
+    Pattern pattern = one(rectangle("p", 0.4, 0.4));
+    const std::vector<Vec2> corners{{0.1, 0.1}, {0.3, 0.1}, {0.3, 0.3}, {0.1, 0.3}};
+    for (int k = 0; k < 4; ++k) {
+        const Vec2 start = corners[k], turn = corners[(k + 1) % 4], end = turn + 0.2 * (turn - start);
+        Loop line{{start, end, Straight{}, ""}};
+        if (cornered) line = {{start, turn, Straight{}, ""}, {turn, end, Straight{}, ""}};
+        pattern.panels[0].lines.push_back({line, InnerLineKind::fold, 0});
+    }
+    for (const FlatLevel& level : sound(pattern, at(0.02, 3)).levels)
+        for (int k = 0; k < 4; ++k) {
+            const std::vector<int>&line = level.lines[0][k], &before = level.lines[0][(k + 3) % 4];
+            CHECK(std::count(before.begin() + 1, before.end() - 1, line.front()) == 1);
+        }
+}
+
+TEST_CASE("border places are fractions of arc length") {
+    Pattern pattern = one(rectangle("p", 0.4, 0.3));
+    pattern.panels[0].outline[0].curve = Arc{0.3, false, true};
+    pattern.pins = {{{0, 0, 0.2, 0.6}}};
+    for (const FlatLevel& level : sound(pattern, at(0.02, 2)).levels) {
+        const std::vector<double>& places = level.border_at[0][0];
+        const std::vector<int>& ids = level.border[0][0];
+        REQUIRE(places.size() == ids.size());
+        for (std::size_t k = 0; k < ids.size(); ++k)
+            CHECK(
+                (level.points[ids[k]] - sample(pattern.panels[0].outline[0], 0, places[k], 1).back()).norm() <
+                1e-12);
+        CHECK(std::count(places.begin(), places.end(), 0.2) == 1); // pins end in samples
+        CHECK(std::count(places.begin(), places.end(), 0.6) == 1);
+    }
+}
+
 TEST_CASE("a cut opens the cloth") {
     Pattern pattern = one(rectangle("p", 0.4, 0.3));
     Panel& panel = pattern.panels[0];
@@ -440,7 +530,8 @@ TEST_CASE("a size function makes the mesh finer where it says, on both sides of 
     const FlatLevel& fine = flat.levels.back();
     for (std::size_t t = 0; t < fine.triangles.size(); ++t)
         if (fine.panel_of_triangle[t] == 0)
-            for (int k = 0; k < 3; ++k) CHECK(corner_angle(fine, fine.triangles[t], k) * 180 / EIGEN_PI > 25);
+            for (int k = 0; k < 3; ++k)
+                CHECK(corner_angle(fine, fine.triangles[t], k) * 180 / EIGEN_PI > 25);
 }
 
 TEST_CASE("coarse levels of small tubes can still be closed") {

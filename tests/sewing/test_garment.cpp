@@ -227,6 +227,18 @@ TEST_CASE("coarse tubes and belts close without folding onto themselves") {
     }
 }
 
+TEST_CASE("vertices are found along spans") {
+    Pattern pattern = tube(0.3, 0.4);
+    pattern.pins = {{{1, 2, 0.75, 0.25}}}; // edge 2 runs from x = 0.3 to x = 0
+    const Garment g = sewn(pattern, 0.02);
+    const std::vector<int> found = vertices_along(g, pattern.pins[0].span);
+    REQUIRE(found.size() > 4);
+    CHECK(g.uv[found.front()].isApprox(Vec2(0.075, 0.4)));
+    CHECK(g.uv[found.back()].isApprox(Vec2(0.225, 0.4)));
+    for (int v : found)
+        CHECK(g.panel_of_vertex[v] == 1);
+}
+
 TEST_CASE("folds keep their rest angle when seams close") {
     Pattern pattern = tube(0.3, 0.3);
     pattern.panels[0].lines = {{{{{0.1, 0}, {0.1, 0.3}, Straight{}, ""}}, InnerLineKind::fold, 1.2}};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/companion.h"
 
+#include "draping/fabric/fabric.h"
 #include "io/json.h"
 #include "io/read_edge.h"
 #include "io/write_file.h"
@@ -24,7 +25,7 @@ public:
         root_.expect_keys({"toile", "units_in_meter", "fabric", "panels", "pins", "elastics", "seams"});
         root_.at("toile").integer(1, 1);
         if (root_.has("units_in_meter")) edges_.metres = read_unit(root_);
-        if (root_.has("fabric")) pattern_.fabric = root_.at("fabric").string();
+        if (root_.has("fabric")) pattern_.fabric = read_fabric(root_.at("fabric"));
         if (root_.has("panels")) read_panels(root_.at("panels"));
         each("pins", [&](const JsonView& v) { read_pins(v); });
         each("elastics", [&](const JsonView& v) { read_elastics(v); });
@@ -41,6 +42,16 @@ private:
             read(list.at(i, "item"));
     }
     template <class Read> void each(const char* key, Read&& read) { each(root_, key, read); }
+
+    static std::string read_fabric(const JsonView& v) {
+        const std::string name = v.string();
+        std::string list;
+        for (const Fabric& f : fabric_presets()) {
+            if (f.name == name) return name;
+            list += (list.empty() ? "" : ", ") + f.name;
+        }
+        v.fail("one of " + list);
+    }
 
     int panel_called(const JsonView& v, const std::string& name) const {
         const auto& panels = pattern_.panels;
@@ -61,7 +72,7 @@ private:
 
     void read_panel(const JsonView& v, Panel& panel) {
         v.expect_keys({"fabric", "grain", "layer", "holes", "lines"});
-        if (v.has("fabric")) panel.fabric = v.at("fabric").string();
+        if (v.has("fabric")) panel.fabric = read_fabric(v.at("fabric"));
         if (v.has("grain")) panel.grain = v.at("grain").number(-360, 360) * EIGEN_PI / 180;
         if (v.has("layer")) panel.layer = v.at("layer").integer(-max_layer, max_layer);
         each(v, "holes", [&](const JsonView& hole) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/companion.h"
 
+#include "draping/fabric/fabric.h"
 #include "io/read_pattern.h"
 #include "patterns/check.h"
 #include "tests/support/schema.h"
@@ -156,6 +157,7 @@ TEST_CASE("what a companion gets wrong is named") {
     CHECK(refusal(full) == "read");
     CHECK(refusal("{}") == "sample.toile.json lacks the key \"toile\"");
     CHECK_THAT(refusal(replaced(full, "\"toile\": 1", "\"toile\": 2")), Contains("\"toile\" must be a whole number from 1 to 1, but is 2"));
+    CHECK_THAT(refusal(replaced(full, "\"denim\"", "\"demin\"")), Contains("panel \"front\", \"fabric\" must be one of poplin, "));
     CHECK_THAT(refusal(replaced(full, "\"pins\"", "\"pinns\"")), Contains("unknown key \"pinns\"; known are: toile, "));
     CHECK_THAT(refusal(replaced(full, "\"layer\"", "\"lager\"")), Contains("panel \"front\" has the unknown key \"lager\""));
     CHECK_THAT(refusal(replaced(full, "\"back\": {}", "\"bakc\": {}")), Contains("\"bakc\", which is no panel of the pattern"));
@@ -181,6 +183,15 @@ TEST_CASE("a refused companion leaves the pattern as it was") {
     CHECK(p.pins.empty());
 }
 
+TEST_CASE("every preset of a fabric may be named, and the schema knows them all") {
+    const test::Schema schema("companion.schema.json");
+    for (const Fabric& f : fabric_presets()) {
+        const std::string text = replaced(full, "\"denim\"", "\"" + f.name + "\"");
+        CHECK(with(text).panels[0].fabric == f.name);
+        CHECK(schema.complaints(text).empty());
+    }
+}
+
 TEST_CASE("the published schema accepts what is read and refuses what is refused") {
     const test::Schema schema("companion.schema.json");
     CHECK(schema.complaints(full).empty());
@@ -188,6 +199,8 @@ TEST_CASE("the published schema accepts what is read and refuses what is refused
     const std::pair<const char*, const char*> wrong[] = {
         {"\"toile\": 1", "\"toile\": 2"},
         {"\"toile\": 1,", ""},
+        {"\"fabric\": \"denim\"", "\"fabric\": \"demin\""},
+        {"\"fabric\": \"poplin\"", "\"fabric\": 3"},
         {"\"pins\"", "\"pinns\""},
         {"\"layer\"", "\"lager\""},
         {"\"layer\": 2", "\"layer\": 2.5"},

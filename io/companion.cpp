@@ -65,8 +65,8 @@ private:
         for (const auto& [name, value] : panels.value().items()) {
             const auto& all = pattern_.panels;
             const auto at = std::find_if(all.begin(), all.end(), [&n = name](const Panel& p) { return p.name == n; });
-            if (at == all.end()) throw InputError(panels.place() + " names " + quoted(name) + ", which is no panel of the pattern");
-            read_panel(panels.below(value, "panel " + quoted(name)), pattern_.panels[at - all.begin()]);
+            if (at == all.end()) throw InputError(panels.place() + " names " + in_quotes(name) + ", which is no panel of the pattern");
+            read_panel(panels.below(value, "panel " + in_quotes(name)), pattern_.panels[at - all.begin()]);
         }
     }
 

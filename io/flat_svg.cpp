@@ -2,8 +2,6 @@
 #include "io/flat_svg.h"
 
 #include "io/write_file.h"
-#include "patterns/check.h"
-#include "patterns/crossing.h"
 #include "patterns/curve.h"
 
 #include <algorithm>
@@ -94,11 +92,25 @@ struct Piece {
     Vec2 place = Vec2::Zero(); ///< of its upper left corner on the sheet, mm
     Vec2 middle = Vec2::Zero();///< a point far from the border, where the name goes
     double room = 0;           ///< its distance from the border, metres
+    double width = 0, height = 0; ///< free on both of its sides, metres
 
     Vec2 on_sheet(const Vec2& p) const {
         return place + mm * Vec2(p.x() - frame.low.x(), frame.high.y() - p.y());
     }
 };
+
+/// Twice the distance from p to the outline along an axis (0: x, 1: y), to the nearer side.
+double free_length(const std::vector<Vec2>& outline, const Vec2& p, int axis) {
+    const int other = 1 - axis;
+    double nearest = INFINITY;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+        const Vec2 &a = outline[i], &b = outline[(i + 1) % outline.size()];
+        if ((a[other] > p[other]) == (b[other] > p[other])) continue;
+        const double at = a[axis] + (b[axis] - a[axis]) * (p[other] - a[other]) / (b[other] - a[other]);
+        nearest = std::min(nearest, std::abs(at - p[axis]));
+    }
+    return std::isfinite(nearest) ? 2 * nearest : 0;
+}
 
 Piece piece_of(const Panel& panel) {
     Piece piece{&panel, polyline(panel.outline), {}};
@@ -108,7 +120,9 @@ Piece piece_of(const Panel& panel) {
     for (const Loop& hole : panel.holes)
         holes.push_back(polyline(hole));
     constexpr int n = 24;
-    piece.middle = 0.5 * (piece.frame.low + piece.frame.high);
+    const Vec2 centre = 0.5 * (piece.frame.low + piece.frame.high);
+    double best = 0;
+    piece.middle = centre;
     for (int i = 1; i < n; ++i)
         for (int k = 1; k < n; ++k) {
             const Vec2 p = piece.frame.low + piece.frame.size().cwiseProduct(Vec2(double(i) / n, double(k) / n));
@@ -116,8 +130,14 @@ Piece piece_of(const Panel& panel) {
             double room = distance_to(piece.outline, p);
             for (const auto& hole : holes)
                 room = inside(hole, p) ? 0 : std::min(room, distance_to(hole, p));
-            if (room > 1.02 * piece.room) piece.room = room, piece.middle = p;
+            const double score = room * (1.5 - (p - centre).norm() / piece.frame.size().norm());
+            if (score <= best) continue;
+            best = score;
+            piece.room = room;
+            piece.middle = p;
         }
+    piece.width = free_length(piece.outline, piece.middle, 0);
+    piece.height = free_length(piece.outline, piece.middle, 1);
     return piece;
 }
 
@@ -147,7 +167,7 @@ public:
     }
 
 private:
-    /// Rows of panels in the order of the file, about 1.6 times as wide as high.
+    /// Rows of panels, tall ones first, about 1.6 times as wide as high.
     void lay_out() {
         double area = 0, widest = 0;
         for (const Piece& p : pieces_) {
@@ -158,9 +178,16 @@ private:
         text_ = std::clamp(std::sqrt(1.6 * area) / 75, 2.5, 30.0);
         const double gap = 2.5 * text_;
         const double row = std::max(widest, std::sqrt(1.6 * 1.35 * area));
+        std::vector<Piece*> order;
+        for (Piece& p : pieces_)
+            order.push_back(&p);
+        std::stable_sort(order.begin(), order.end(), [](const Piece* a, const Piece* b) {
+            return a->frame.size().y() > b->frame.size().y();
+        });
         Vec2 at(gap, gap + 2 * text_);
         double height = 0;
-        for (Piece& p : pieces_) {
+        for (Piece* piece : order) {
+            Piece& p = *piece;
             const Vec2 size = mm * p.frame.size();
             if (at.x() > gap && at.x() + size.x() > gap + row) {
                 at = {gap, at.y() + height + 2 * gap};
@@ -313,23 +340,33 @@ private:
         return m;
     }
 
+    double number_radius(const Middle& m) const { return std::clamp(0.2 * m.length, 0.25 * text_, 0.62 * text_); }
+
     void draw_seam_numbers(std::size_t s) {
         const Seam& seam = pattern_.seams[s];
-        for (const SeamSide* side : {&seam.a, &seam.b}) {
-            if (side->empty()) continue;
-            const Middle m = middle_of(*side);
-            const double r = std::clamp(0.2 * m.length, 0.25 * text_, 0.62 * text_);
-            const Vec2 tip = m.at + 1.75 * r * m.along, foot = m.at + 1.05 * r * m.along;
-            const Vec2 across(-m.along.y(), m.along.x());
-            const std::string colour = seam_colour(s);
-            body_ += "<path d=\"M" + pair(tip) + " L" + pair(foot + 0.45 * r * across) + " L" + pair(foot - 0.45 * r * across) +
-                     " Z\" fill=\"" + colour + "\"/>\n<circle cx=\"" + number(m.at.x()) + "\" cy=\"" + number(m.at.y()) +
-                     "\" r=\"" + number(r) + "\" fill=\"#ffffff\" stroke=\"" + colour + "\" stroke-width=\"" + number(0.16 * r) +
-                     "\"/>\n";
-            const std::string label = std::to_string(s);
-            const double size = (label.size() > 2 ? 0.8 : 1.15) * r;
-            words(m.at + Vec2(0, 0.36 * size), size, label, " font-weight=\"bold\" fill=\"" + colour + "\"");
+        if (seam.a.empty() || seam.b.empty()) return;
+        Middle a = middle_of(seam.a), b = middle_of(seam.b);
+        const double r = std::min(number_radius(a), number_radius(b));
+        if ((a.at - b.at).norm() < 2.2 * r) { // the legs of a narrow dart
+            a.at += 1.2 * r * a.inward;
+            b.at += 1.2 * r * b.inward;
         }
+        for (const Middle& m : {a, b})
+            draw_seam_number(s, m, r);
+    }
+
+    void draw_seam_number(std::size_t s, const Middle& m, double r) {
+        const Vec2 tip = m.at + 1.75 * r * m.along, foot = m.at + 1.05 * r * m.along;
+        const Vec2 across(-m.along.y(), m.along.x());
+        const std::string colour = seam_colour(s);
+        body_ += "<path d=\"M" + pair(tip) + " L" + pair(foot + 0.45 * r * across) + " L" + pair(foot - 0.45 * r * across) +
+                 " Z\" fill=\"" + colour + "\"/>\n<circle cx=\"" + number(m.at.x()) + "\" cy=\"" + number(m.at.y()) +
+                 "\" r=\"" + number(r) + "\" fill=\"#ffffff\" stroke=\"" + colour + "\" stroke-width=\"" +
+                 number(0.16 * r) + "\"/>\n";
+        const std::string label = std::to_string(s);
+        const double size = (label.size() > 2 ? 0.8 : 1.15) * r;
+        words(m.at + Vec2(0, 0.36 * size), size, label,
+              " class=\"seam\" font-weight=\"bold\" fill=\"" + colour + "\"");
     }
 
     void draw_elastic(const Elastic& e) {
@@ -348,15 +385,18 @@ private:
     void draw_words(const Piece& piece) {
         const Panel& panel = *piece.panel;
         const double room = mm * piece.room;
-        const double letters = 0.5 * double(std::max<std::size_t>(6, std::min<std::size_t>(30, panel.name.size())));
-        const double size = std::clamp(1.6 * room / letters, 0.3 * text_, 1.2 * text_);
+        const double letters = 0.62 * double(std::max<std::size_t>(6, panel.name.size()));
+        const bool upright = piece.height > 2 * piece.width; // a narrow strip: the words run along it
+        const double line = 0.9 * mm * (upright ? piece.height : piece.width) / letters;
+        const double size = std::clamp(std::min(0.9 * room, line), 0.25 * text_, 1.2 * text_);
         const Vec2 at = piece.on_sheet(piece.middle);
         draw_grain(panel, at, std::min(0.9 * room, 5 * text_), size);
         std::vector<std::string> lines;
         if (!panel.fabric.empty()) lines.push_back(panel.fabric);
         if (panel.layer != 0) lines.push_back("layer " + std::to_string(panel.layer));
         if (signed_area(panel.outline) < 0) lines.push_back("wrong side up");
-        const std::string halo = " stroke=\"#f4efe4\" stroke-width=\"" + number(0.25 * size) + "\" paint-order=\"stroke\"";
+        const std::string halo = " stroke=\"#f4efe4\" stroke-width=\"" + number(0.25 * size) + "\" paint-order=\"stroke\"" +
+                                 (upright ? " transform=\"rotate(-90 " + pair(at) + ")\"" : "");
         words(at, size, panel.name, " font-weight=\"bold\" fill=\"#202020\"" + halo);
         double below = 0.9 * size;
         for (const std::string& line : lines) {

@@ -25,41 +25,6 @@ std::string line_and_column(const std::string& text, std::size_t byte) {
     return "line " + std::to_string(line) + ", column " + std::to_string(column);
 }
 
-/// Watches the parser: it builds values as it reads, so a limit must be kept while it reads.
-class Guard {
-public:
-    Guard(const std::string& name, const JsonLimits& limits) : name_(name), limits_(limits) {}
-
-    bool operator()(int depth, nlohmann::json::parse_event_t event, const Json& value) {
-        using Event = nlohmann::json::parse_event_t;
-        if (event == Event::object_end) keys_.pop_back();
-        if (event == Event::object_end || event == Event::array_end) return true;
-        if (depth >= limits_.max_depth)
-            throw InputError(name_ + " is nested more than " + std::to_string(limits_.max_depth) +
-                             " deep, which no pattern needs");
-        if (++values_ > limits_.max_values)
-            throw InputError(name_ + " holds more than " + std::to_string(limits_.max_values) +
-                             " values, the most that is read");
-        if (event == Event::object_start) keys_.emplace_back();
-        if (event == Event::key) add_key(value.get_ref<const std::string&>());
-        return true;
-    }
-
-private:
-    void add_key(const std::string& key) {
-        if (!keys_.back().insert(key).second)
-            throw InputError(name_ + " gives the key " + quoted(key) + " twice in one object");
-        if (keys_.back().size() > limits_.max_keys)
-            throw InputError(name_ + " has an object of more than " + std::to_string(limits_.max_keys) +
-                             " keys, the most that is read");
-    }
-
-    const std::string& name_;
-    const JsonLimits& limits_;
-    std::size_t values_ = 0;
-    std::vector<std::set<std::string>> keys_;
-};
-
 /// The parser's own words without its error number and position, which the sentence gives in another form.
 std::string reason(const nlohmann::json::exception& e) {
     std::string s = e.what();
@@ -71,6 +36,67 @@ std::string reason(const nlohmann::json::exception& e) {
         clean += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
     return clean;
 }
+
+/// Looks at the text before anything is built from it: a document within the limits is then parsed plainly. (The
+/// parser's own callback would do, but makes it walk every array again for each of its members.)
+class Guard : public nlohmann::json_sax<Json> {
+public:
+    Guard(const std::string& text, const std::string& name, const JsonLimits& limits)
+        : text_(text), name_(name), limits_(limits) {}
+
+    bool null() override { return count(); }
+    bool boolean(bool) override { return count(); }
+    bool number_integer(number_integer_t) override { return count(); }
+    bool number_unsigned(number_unsigned_t) override { return count(); }
+    bool number_float(number_float_t, const string_t&) override { return count(); }
+    bool string(string_t&) override { return count(); }
+    bool binary(binary_t&) override { return count(); }
+    bool start_array(std::size_t) override { return open(); }
+    bool end_array() override { return close(); }
+    bool start_object(std::size_t) override { return open(); }
+    bool end_object() override { return close(); }
+
+    bool key(string_t& key) override {
+        std::set<std::string>& keys = keys_.back();
+        if (!keys.insert(key).second)
+            throw InputError(name_ + " gives the key " + in_quotes(key) + " twice in one object");
+        if (keys.size() > limits_.max_keys)
+            throw InputError(name_ + " has an object of more than " + std::to_string(limits_.max_keys) +
+                             " keys, the most that is read");
+        return true;
+    }
+
+    bool parse_error(std::size_t byte, const std::string&, const nlohmann::detail::exception& e) override {
+        throw InputError(name_ + " is not valid JSON at " + line_and_column(text_, byte) + ": " + reason(e));
+    }
+
+private:
+    bool count() {
+        if (++values_ > limits_.max_values)
+            throw InputError(name_ + " holds more than " + std::to_string(limits_.max_values) +
+                             " values, the most that is read");
+        return true;
+    }
+
+    bool open() {
+        keys_.emplace_back();
+        if (int(keys_.size()) > limits_.max_depth)
+            throw InputError(name_ + " is nested more than " + std::to_string(limits_.max_depth) +
+                             " deep, which no pattern needs");
+        return count();
+    }
+
+    bool close() {
+        keys_.pop_back();
+        return true;
+    }
+
+    const std::string& text_;
+    const std::string& name_;
+    const JsonLimits& limits_;
+    std::size_t values_ = 0;
+    std::vector<std::set<std::string>> keys_; ///< of the arrays and objects that are open
+};
 
 } // namespace
 
@@ -89,19 +115,12 @@ std::string read_text(std::istream& in, const std::string& name, std::uintmax_t 
 Json parse_json(const std::string& text, const std::string& name, const JsonLimits& limits) {
     if (text.find_first_not_of(" \t\r\n") == std::string::npos)
         throw InputError(name + " is empty; JSON was expected");
-    Guard guard(name, limits);
-    try {
-        return Json::parse(text, [&guard](int depth, nlohmann::json::parse_event_t event, Json& value) {
-            return guard(depth, event, value);
-        });
-    } catch (const Json::parse_error& e) {
-        throw InputError(name + " is not valid JSON at " + line_and_column(text, e.byte) + ": " + reason(e));
-    } catch (const Json::exception& e) {
-        throw InputError(name + " is not valid JSON: " + reason(e));
-    }
+    Guard guard(text, name, limits);
+    Json::sax_parse(text, &guard);
+    return Json::parse(text);
 }
 
-std::string quoted(const std::string& name) {
+std::string in_quotes(const std::string& name) {
     constexpr std::size_t most = 60;
     std::string s = "\"";
     for (char c : name.substr(0, most))
@@ -111,7 +130,7 @@ std::string quoted(const std::string& name) {
 
 std::string shown(const Json& value) {
     if (value.is_null()) return "null";
-    if (value.is_string()) return quoted(value.get_ref<const std::string&>());
+    if (value.is_string()) return in_quotes(value.get_ref<const std::string&>());
     if (value.is_object()) return "an object";
     if (value.is_array()) {
         const std::size_t n = value.size();
@@ -161,7 +180,7 @@ void JsonView::expect_keys(std::initializer_list<const char*> keys) const {
             known = known || key == k;
             list += (list.empty() ? "" : ", ") + std::string(k);
         }
-        if (!known) throw InputError(place_ + " has the unknown key " + quoted(key) + "; known are: " + list);
+        if (!known) throw InputError(place_ + " has the unknown key " + in_quotes(key) + "; known are: " + list);
     }
 }
 

@@ -70,6 +70,6 @@ private:
 /// A value for a message: short, on one line.
 std::string shown(const Json& value);
 /// A name from a file in quotes: cut when long, without control characters.
-std::string quoted(const std::string& name);
+std::string in_quotes(const std::string& name);
 
 } // namespace toile

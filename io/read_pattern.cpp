@@ -126,7 +126,7 @@ EdgeSpan read_stitch_side(const JsonView& v, const Reader& reader) {
     const JsonView number = v.at("edge");
     const double edge = number.value().is_number_integer() ? number.number() : -1;
     if (edge < 0 || edge >= count)
-        number.fail("the number of an edge of panel " + quoted(found->first) + ", 0 to " + std::to_string(count - 1));
+        number.fail("the number of an edge of panel " + in_quotes(found->first) + ", 0 to " + std::to_string(count - 1));
     return {found->second, int(edge), 0, 1};
 }
 
@@ -157,7 +157,7 @@ void read_panels(const JsonView& pattern, const std::string& file, Reader& reade
     panels.expect_object();
     if (panels.value().empty()) throw InputError(file + " has no panels");
     for (const auto& [name, value] : panels.value().items()) {
-        const JsonView panel(value, file + ": panel " + quoted(name));
+        const JsonView panel(value, file + ": panel " + in_quotes(name));
         panel.expect_object();
         reader.panel_index[name] = int(reader.pattern.panels.size());
         reader.pattern.panels.push_back(read_panel(panel, name, reader));

@@ -74,6 +74,8 @@ Meeting meeting(const Segment& s, const Segment& t, Vec2& at) {
     return Meeting::none;
 }
 
+constexpr std::size_t enough = 1000; ///< a scribble of n lines has n^2 crossings
+
 class Finder {
 public:
     Finder(const std::vector<Chain>& chains, const Grid& grid, const CrossingOptions& options)
@@ -94,7 +96,7 @@ public:
         std::stable_sort(segments_.begin(), segments_.end(),
                          [axis](const Segment& s, const Segment& t) { return s.low[axis] < t.low[axis]; });
         std::vector<int> active;
-        for (int i = 0; i < int(segments_.size()); ++i) {
+        for (int i = 0; i < int(segments_.size()) && found_.size() < enough; ++i) {
             const Segment& s = segments_[i];
             std::erase_if(active, [&](int j) { return segments_[j].high[axis] < s.low[axis]; });
             for (int j : active)

@@ -25,8 +25,8 @@ struct CrossingOptions {
     double corner = 2e-4; ///< metres around the corner of two neighbouring edges where they may meet
 };
 
-/// Pairs of edges that cross, or touch where they are not neighbours, each pair once, sorted. All coordinates must
-/// be finite and all edges of the panel's chains within `extent` metres of each other.
+/// Pairs of edges that cross, or touch where they are not neighbours, each pair once, sorted; at most about a
+/// thousand. All coordinates must be finite and all edges of the panel's chains within `extent` metres of each other.
 /// Decided exactly for points rounded to a grid of extent / 2^24, at least a micrometre.
 std::vector<Crossing> find_crossings(const std::vector<Chain>& chains, double extent,
                                      const CrossingOptions& options = {});

@@ -13,7 +13,7 @@
 namespace toile {
 namespace {
 
-constexpr std::size_t max_items = 10'000; ///< of pins, elastics, seams, holes, lines each
+constexpr std::size_t max_items = 10'000;  ///< of pins, elastics, seams, holes, lines each
 constexpr std::size_t max_named = 100'000; ///< edges that all labels name together
 constexpr int max_layer = 100;
 
@@ -55,7 +55,8 @@ private:
 
     int panel_called(const JsonView& v, const std::string& name) const {
         const auto& panels = pattern_.panels;
-        const auto at = std::find_if(panels.begin(), panels.end(), [&](const Panel& p) { return p.name == name; });
+        const auto at =
+            std::find_if(panels.begin(), panels.end(), [&](const Panel& p) { return p.name == name; });
         if (at == panels.end()) v.fail("the name of a panel of the pattern");
         return int(at - panels.begin());
     }
@@ -64,8 +65,11 @@ private:
         panels.expect_object();
         for (const auto& [name, value] : panels.value().items()) {
             const auto& all = pattern_.panels;
-            const auto at = std::find_if(all.begin(), all.end(), [&n = name](const Panel& p) { return p.name == n; });
-            if (at == all.end()) throw InputError(panels.place() + " names " + in_quotes(name) + ", which is no panel of the pattern");
+            const auto at =
+                std::find_if(all.begin(), all.end(), [&n = name](const Panel& p) { return p.name == n; });
+            if (at == all.end())
+                throw InputError(panels.place() + " names " + in_quotes(name) +
+                                 ", which is no panel of the pattern");
             read_panel(panels.below(value, "panel " + in_quotes(name)), pattern_.panels[at - all.begin()]);
         }
     }
@@ -104,10 +108,14 @@ private:
         line.edges = read_chain(v, v.has("closed") && v.at("closed").boolean());
         const JsonView kind = v.at("kind");
         const std::string word = kind.string();
-        if (word == "fold") line.kind = InnerLineKind::fold;
-        else if (word == "pleat") line.kind = InnerLineKind::pleat;
-        else if (word == "cut") line.kind = InnerLineKind::cut;
-        else kind.fail("\"fold\", \"pleat\" or \"cut\"");
+        if (word == "fold")
+            line.kind = InnerLineKind::fold;
+        else if (word == "pleat")
+            line.kind = InnerLineKind::pleat;
+        else if (word == "cut")
+            line.kind = InnerLineKind::cut;
+        else
+            kind.fail("\"fold\", \"pleat\" or \"cut\"");
         if (v.has("angle")) line.rest_angle = v.at("angle").number(-180, 180) * EIGEN_PI / 180;
         return line;
     }
@@ -132,11 +140,13 @@ private:
         for (part.panel = 0; part.panel < int(pattern_.panels.size()); ++part.panel) {
             const Loop& outline = pattern_.panels[part.panel].outline;
             for (part.edge = 0; part.edge < int(outline.size()); ++part.edge)
-                if (outline[part.edge].label == word && (only < 0 || only == part.panel)) spans.push_back(part);
+                if (outline[part.edge].label == word && (only < 0 || only == part.panel))
+                    spans.push_back(part);
         }
         if (spans.empty()) label.fail("the label of an edge");
         named_ += spans.size();
-        if (named_ > max_named) label.fail("used less often: all labels together name more than 100000 edges");
+        if (named_ > max_named)
+            label.fail("used less often: all labels together name more than 100000 edges");
         return spans;
     }
 
@@ -180,10 +190,13 @@ private:
         if (v.has("faces")) {
             const JsonView faces = v.at("faces");
             const std::string word = faces.string();
-            if (word == "right_to_wrong") seam.faces = SeamFaces::right_to_wrong;
-            else if (word != "right_to_right") faces.fail("\"right_to_right\" or \"right_to_wrong\"");
+            if (word == "right_to_wrong")
+                seam.faces = SeamFaces::right_to_wrong;
+            else if (word != "right_to_right")
+                faces.fail("\"right_to_right\" or \"right_to_wrong\"");
         }
-        seam.name = "seam " + std::to_string(pattern_.seams.size()) + " (" + called(seam.a) + " to " + called(seam.b) + ")";
+        seam.name = "seam " + std::to_string(pattern_.seams.size()) + " (" + called(seam.a) + " to " +
+                    called(seam.b) + ")";
         return seam;
     }
 
@@ -192,7 +205,8 @@ private:
         for (std::size_t i = 0; i < side.size(); ++i) {
             const EdgeSpan& s = side[i];
             out << (i ? " + " : "") << pattern_.panels[s.panel].name << '.' << s.edge;
-            if (std::min(s.t0, s.t1) > 0 || std::max(s.t0, s.t1) < 1) out << '[' << s.t0 << ".." << s.t1 << ']';
+            if (std::min(s.t0, s.t1) > 0 || std::max(s.t0, s.t1) < 1)
+                out << '[' << s.t0 << ".." << s.t1 << ']';
         }
         return out.str();
     }

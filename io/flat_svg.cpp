@@ -26,22 +26,29 @@ std::string number(double x) {
 std::string escaped(const std::string& text) {
     std::string out;
     for (char c : text) {
-        if (c == '&') out += "&amp;";
-        else if (c == '<') out += "&lt;";
-        else if (c == '>') out += "&gt;";
-        else if (c == '"') out += "&quot;";
-        else out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
+        if (c == '&')
+            out += "&amp;";
+        else if (c == '<')
+            out += "&lt;";
+        else if (c == '>')
+            out += "&gt;";
+        else if (c == '"')
+            out += "&quot;";
+        else
+            out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
     }
     return out;
 }
 
 /// Hues that stay apart however many there are.
 std::string seam_colour(std::size_t seam) {
-    const double hue = std::fmod(0.61803398875 * double(seam), 1.0) * 6, x = 1 - std::abs(std::fmod(hue, 2.0) - 1);
+    const double hue = std::fmod(0.61803398875 * double(seam), 1.0) * 6,
+                 x = 1 - std::abs(std::fmod(hue, 2.0) - 1);
     const double channels[6][3] = {{1, x, 0}, {x, 1, 0}, {0, 1, x}, {0, x, 1}, {x, 0, 1}, {1, 0, x}};
     const double* c = channels[std::min(5, int(hue))];
     char text[8];
-    std::snprintf(text, sizeof text, "#%02x%02x%02x", int(30 + 170 * c[0]), int(30 + 140 * c[1]), int(30 + 190 * c[2]));
+    std::snprintf(text, sizeof text, "#%02x%02x%02x", int(30 + 170 * c[0]), int(30 + 140 * c[1]),
+                  int(30 + 190 * c[2]));
     return text;
 }
 
@@ -78,7 +85,8 @@ bool inside(const std::vector<Vec2>& points, const Vec2& p) {
     bool in = false;
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Vec2 &a = points[i], &b = points[(i + 1) % points.size()];
-        if ((a.y() > p.y()) != (b.y() > p.y()) && p.x() < a.x() + (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()))
+        if ((a.y() > p.y()) != (b.y() > p.y()) &&
+            p.x() < a.x() + (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()))
             in = !in;
     }
     return in;
@@ -87,11 +95,11 @@ bool inside(const std::vector<Vec2>& points, const Vec2& p) {
 /// A panel on the sheet.
 struct Piece {
     const Panel* panel;
-    std::vector<Vec2> outline; ///< metres, panel coordinates
-    Frame frame;               ///< of the outline
-    Vec2 place = Vec2::Zero(); ///< of its upper left corner on the sheet, mm
-    Vec2 middle = Vec2::Zero();///< a point far from the border, where the name goes
-    double room = 0;           ///< its distance from the border, metres
+    std::vector<Vec2> outline;    ///< metres, panel coordinates
+    Frame frame;                  ///< of the outline
+    Vec2 place = Vec2::Zero();    ///< of its upper left corner on the sheet, mm
+    Vec2 middle = Vec2::Zero();   ///< a point far from the border, where the name goes
+    double room = 0;              ///< its distance from the border, metres
     double width = 0, height = 0; ///< free on both of its sides, metres
 
     Vec2 on_sheet(const Vec2& p) const {
@@ -125,7 +133,8 @@ Piece piece_of(const Panel& panel) {
     piece.middle = centre;
     for (int i = 1; i < n; ++i)
         for (int k = 1; k < n; ++k) {
-            const Vec2 p = piece.frame.low + piece.frame.size().cwiseProduct(Vec2(double(i) / n, double(k) / n));
+            const Vec2 p =
+                piece.frame.low + piece.frame.size().cwiseProduct(Vec2(double(i) / n, double(k) / n));
             if (!inside(piece.outline, p)) continue;
             double room = distance_to(piece.outline, p);
             for (const auto& hole : holes)
@@ -203,9 +212,11 @@ private:
     }
 
     std::string head() const {
-        return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
-               number(size_.x()) + "mm\" height=\"" + number(size_.y()) + "mm\" viewBox=\"0 0 " + number(size_.x()) + " " +
-               number(size_.y()) + "\" font-family=\"sans-serif\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n" +
+        return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
+               "width=\"" +
+               number(size_.x()) + "mm\" height=\"" + number(size_.y()) + "mm\" viewBox=\"0 0 " +
+               number(size_.x()) + " " + number(size_.y()) +
+               "\" font-family=\"sans-serif\" stroke-linejoin=\"round\" stroke-linecap=\"round\">\n" +
                "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n";
     }
 
@@ -223,14 +234,16 @@ private:
         std::string operator()(const Arc& a) const {
             // With y down on the sheet, what turns counter-clockwise in the panel has sweep 0.
             const std::string r = number(mm * turn_of(edge, a).radius);
-            return " A" + r + " " + r + " 0 " + (a.large ? "1 " : "0 ") + (a.right ? "0 " : "1 ") + to(edge.end);
+            return " A" + r + " " + r + " 0 " + (a.large ? "1 " : "0 ") + (a.right ? "0 " : "1 ") +
+                   to(edge.end);
         }
     };
 
     static std::string path(const Piece& piece, const Loop& loop) {
         std::string d;
         for (std::size_t i = 0; i < loop.size(); ++i) {
-            if (i == 0 || loop[i].start != loop[i - 1].end) d += (i ? " M" : "M") + pair(piece.on_sheet(loop[i].start));
+            if (i == 0 || loop[i].start != loop[i - 1].end)
+                d += (i ? " M" : "M") + pair(piece.on_sheet(loop[i].start));
             d += std::visit(Segment{piece, loop[i]}, loop[i].curve);
         }
         if (!loop.empty() && loop.front().start == loop.back().end) d += " Z";
@@ -249,8 +262,8 @@ private:
     }
 
     void stroke(const std::string& d, const std::string& colour, double width, const std::string& more = "") {
-        body_ += "<path d=\"" + d + "\" fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"" + number(width) + "\"" +
-                 more + "/>\n";
+        body_ += "<path d=\"" + d + "\" fill=\"none\" stroke=\"" + colour + "\" stroke-width=\"" +
+                 number(width) + "\"" + more + "/>\n";
     }
 
     std::string dashes(std::initializer_list<double> lengths) const {
@@ -261,8 +274,8 @@ private:
     }
 
     void words(const Vec2& at, double size, const std::string& text, const std::string& more = "") {
-        body_ += "<text x=\"" + number(at.x()) + "\" y=\"" + number(at.y()) + "\" font-size=\"" + number(size) +
-                 "\" text-anchor=\"middle\"" + more + ">" + escaped(text) + "</text>\n";
+        body_ += "<text x=\"" + number(at.x()) + "\" y=\"" + number(at.y()) + "\" font-size=\"" +
+                 number(size) + "\" text-anchor=\"middle\"" + more + ">" + escaped(text) + "</text>\n";
     }
 
     void draw_panel(const Piece& piece) {
@@ -270,7 +283,8 @@ private:
         std::string d = path(piece, panel.outline);
         for (const Loop& hole : panel.holes)
             d += " " + path(piece, hole);
-        body_ += "<path class=\"panel\" d=\"" + d + "\" fill=\"#f4efe4\" fill-rule=\"evenodd\" stroke=\"#303030\" stroke-width=\"" +
+        body_ += "<path class=\"panel\" d=\"" + d +
+                 "\" fill=\"#f4efe4\" fill-rule=\"evenodd\" stroke=\"#303030\" stroke-width=\"" +
                  number(0.08 * text_) + "\"/>\n";
         for (const InnerLine& line : panel.lines)
             draw_line(piece, line);
@@ -278,9 +292,12 @@ private:
 
     void draw_line(const Piece& piece, const InnerLine& line) {
         const std::string d = path(piece, line.edges);
-        if (line.kind == InnerLineKind::cut) stroke(d, "#c02020", 0.12 * text_);
-        else if (line.kind == InnerLineKind::fold) stroke(d, "#606060", 0.1 * text_, dashes({0.8, 0.3, 0.1, 0.3}));
-        else stroke(d, "#606060", 0.1 * text_, dashes({0.6, 0.4}));
+        if (line.kind == InnerLineKind::cut)
+            stroke(d, "#c02020", 0.12 * text_);
+        else if (line.kind == InnerLineKind::fold)
+            stroke(d, "#606060", 0.1 * text_, dashes({0.8, 0.3, 0.1, 0.3}));
+        else
+            stroke(d, "#606060", 0.1 * text_, dashes({0.6, 0.4}));
     }
 
     /// A dart is a seam of two edges of one panel that share the corner at which both sides start or end.
@@ -321,7 +338,8 @@ private:
         while (k + 1 < side.size() && rest > lengths[k])
             rest -= lengths[k++];
         const EdgeSpan& s = side[k];
-        return middle_at(s, s.t0 + (s.t1 - s.t0) * (lengths[k] > 0 ? std::min(1.0, rest / lengths[k]) : 0.5), total);
+        return middle_at(s, s.t0 + (s.t1 - s.t0) * (lengths[k] > 0 ? std::min(1.0, rest / lengths[k]) : 0.5),
+                         total);
     }
 
     Middle middle_at(const EdgeSpan& s, double t, double metres) const {
@@ -334,13 +352,16 @@ private:
         const Vec2 b = m.piece->on_sheet(sample(edge, after, after, 1)[0]);
         m.at = m.piece->on_sheet(sample(edge, t, t, 1)[0]);
         const Vec2 forward = (b - a).norm() > 0 ? Vec2((b - a).normalized()) : Vec2(1, 0);
-        const bool left = signed_area(m.piece->panel->outline) > 0; // the inside lies left of a counter-clockwise loop
+        const bool left =
+            signed_area(m.piece->panel->outline) > 0; // the inside lies left of a counter-clockwise loop
         m.inward = left ? Vec2(forward.y(), -forward.x()) : Vec2(-forward.y(), forward.x());
         m.along = s.t1 < s.t0 ? Vec2(-forward) : forward;
         return m;
     }
 
-    double number_radius(const Middle& m) const { return std::clamp(0.2 * m.length, 0.25 * text_, 0.62 * text_); }
+    double number_radius(const Middle& m) const {
+        return std::clamp(0.2 * m.length, 0.25 * text_, 0.62 * text_);
+    }
 
     void draw_seam_numbers(std::size_t s) {
         const Seam& seam = pattern_.seams[s];
@@ -359,10 +380,11 @@ private:
         const Vec2 tip = m.at + 1.75 * r * m.along, foot = m.at + 1.05 * r * m.along;
         const Vec2 across(-m.along.y(), m.along.x());
         const std::string colour = seam_colour(s);
-        body_ += "<path d=\"M" + pair(tip) + " L" + pair(foot + 0.45 * r * across) + " L" + pair(foot - 0.45 * r * across) +
-                 " Z\" fill=\"" + colour + "\"/>\n<circle cx=\"" + number(m.at.x()) + "\" cy=\"" + number(m.at.y()) +
-                 "\" r=\"" + number(r) + "\" fill=\"#ffffff\" stroke=\"" + colour + "\" stroke-width=\"" +
-                 number(0.16 * r) + "\"/>\n";
+        body_ += "<path d=\"M" + pair(tip) + " L" + pair(foot + 0.45 * r * across) + " L" +
+                 pair(foot - 0.45 * r * across) + " Z\" fill=\"" + colour + "\"/>\n<circle cx=\"" +
+                 number(m.at.x()) + "\" cy=\"" + number(m.at.y()) + "\" r=\"" + number(r) +
+                 "\" fill=\"#ffffff\" stroke=\"" + colour + "\" stroke-width=\"" + number(0.16 * r) +
+                 "\"/>\n";
         const std::string label = std::to_string(s);
         const double size = (label.size() > 2 ? 0.8 : 1.15) * r;
         words(m.at + Vec2(0, 0.36 * size), size, label,
@@ -395,7 +417,8 @@ private:
         if (!panel.fabric.empty()) lines.push_back(panel.fabric);
         if (panel.layer != 0) lines.push_back("layer " + std::to_string(panel.layer));
         if (signed_area(panel.outline) < 0) lines.push_back("wrong side up");
-        const std::string halo = " stroke=\"#f4efe4\" stroke-width=\"" + number(0.25 * size) + "\" paint-order=\"stroke\"" +
+        const std::string halo = " stroke=\"#f4efe4\" stroke-width=\"" + number(0.25 * size) +
+                                 "\" paint-order=\"stroke\"" +
                                  (upright ? " transform=\"rotate(-90 " + pair(at) + ")\"" : "");
         words(at, size, panel.name, " font-weight=\"bold\" fill=\"#202020\"" + halo);
         double below = 0.9 * size;
@@ -415,12 +438,15 @@ private:
         const Vec2 down(0, 0.35 * size);
         words(quarter.at + 0.9 * size * quarter.inward + down, size, std::to_string(e), " fill=\"#909090\"");
         if (edge.label.empty()) return;
-        const Middle m = middle_at(span, 0.5, length(edge));
+        const Middle m = middle_at(span, 0.7, length(edge)); // beside the seam's number and the panel's name
         double turn = std::atan2(m.along.y(), m.along.x()) * 180 / EIGEN_PI;
         if (turn > 90 || turn < -90) turn += turn > 0 ? -180 : 180;
-        const double fit = std::clamp(0.9 * m.length / (0.55 * double(edge.label.size())), 0.2 * text_, 0.55 * text_);
+        const double fit =
+            std::clamp(0.5 * m.length / (0.55 * double(edge.label.size())), 0.2 * text_, 0.55 * text_);
         const Vec2 at = m.at + (0.75 * text_ + 0.6 * fit) * m.inward;
-        words(at, fit, edge.label, " font-style=\"italic\" fill=\"#2060a0\" transform=\"rotate(" + number(turn) + " " + pair(at) + ")\"");
+        words(at, fit, edge.label,
+              " font-style=\"italic\" fill=\"#2060a0\" transform=\"rotate(" + number(turn) + " " + pair(at) +
+                  ")\"");
     }
 
     void draw_grain(const Panel& panel, const Vec2& at, double half, double size) {
@@ -429,18 +455,20 @@ private:
         std::string d = "M" + pair(at - half * way) + " L" + pair(at + half * way);
         for (double sign : {-1.0, 1.0}) {
             const Vec2 tip = at + sign * half * way, back = tip - sign * head * way;
-            d += " M" + pair(back + 0.5 * head * across) + " L" + pair(tip) + " L" + pair(back - 0.5 * head * across);
+            d += " M" + pair(back + 0.5 * head * across) + " L" + pair(tip) + " L" +
+                 pair(back - 0.5 * head * across);
         }
-        body_ += "<path class=\"grain\" d=\"" + d + "\" fill=\"none\" stroke=\"#707070\" stroke-width=\"" + number(0.07 * text_) + "\"/>\n";
+        body_ += "<path class=\"grain\" d=\"" + d + "\" fill=\"none\" stroke=\"#707070\" stroke-width=\"" +
+                 number(0.07 * text_) + "\"/>\n";
     }
 
     void draw_title_and_bar() {
         const double gap = 2.5 * text_;
-        body_ += "<text x=\"" + number(gap) + "\" y=\"" + number(gap) + "\" font-size=\"" + number(1.3 * text_) +
-                 "\" fill=\"#202020\">" + escaped(pattern_.name) + "</text>\n";
+        body_ += "<text x=\"" + number(gap) + "\" y=\"" + number(gap) + "\" font-size=\"" +
+                 number(1.3 * text_) + "\" fill=\"#202020\">" + escaped(pattern_.name) + "</text>\n";
         const Vec2 from(gap, size_.y() - gap), to = from + Vec2(100, 0), tick(0, 0.4 * text_);
-        stroke("M" + pair(from - tick) + " L" + pair(from + tick) + " M" + pair(from) + " L" + pair(to) + " M" + pair(to - tick) +
-                   " L" + pair(to + tick),
+        stroke("M" + pair(from - tick) + " L" + pair(from + tick) + " M" + pair(from) + " L" + pair(to) +
+                   " M" + pair(to - tick) + " L" + pair(to + tick),
                "#202020", 0.12 * text_);
         words(0.5 * (from + to) - Vec2(0, 0.6 * text_), 0.9 * text_, "10 cm", " fill=\"#202020\"");
     }
@@ -454,8 +482,12 @@ private:
 
 } // namespace
 
-std::string flat_svg(const Pattern& pattern) { return Sheet(pattern).draw(); }
+std::string flat_svg(const Pattern& pattern) {
+    return Sheet(pattern).draw();
+}
 
-void write_flat_svg(const std::string& path, const Pattern& pattern) { write_file(path, flat_svg(pattern)); }
+void write_flat_svg(const std::string& path, const Pattern& pattern) {
+    write_file(path, flat_svg(pattern));
+}
 
 } // namespace toile

@@ -11,8 +11,10 @@ namespace {
 
 std::string megabytes(std::uintmax_t bytes) {
     std::ostringstream out;
-    if (bytes < (1u << 20)) out << bytes << " bytes";
-    else out << (bytes + (1u << 19)) / (1u << 20) << " MB";
+    if (bytes < (1u << 20))
+        out << bytes << " bytes";
+    else
+        out << (bytes + (1u << 19)) / (1u << 20) << " MB";
     return out.str();
 }
 
@@ -37,8 +39,8 @@ std::string reason(const nlohmann::json::exception& e) {
     return clean;
 }
 
-/// Looks at the text before anything is built from it: a document within the limits is then parsed plainly. (The
-/// parser's own callback would do, but makes it walk every array again for each of its members.)
+/// Looks at the text before anything is built from it: a document within the limits is then parsed plainly.
+/// (The parser's own callback would do, but makes it walk every array again for each of its members.)
 class Guard : public nlohmann::json_sax<Json> {
 public:
     Guard(const std::string& text, const std::string& name, const JsonLimits& limits)
@@ -180,7 +182,8 @@ void JsonView::expect_keys(std::initializer_list<const char*> keys) const {
             known = known || key == k;
             list += (list.empty() ? "" : ", ") + std::string(k);
         }
-        if (!known) throw InputError(place_ + " has the unknown key " + in_quotes(key) + "; known are: " + list);
+        if (!known)
+            throw InputError(place_ + " has the unknown key " + in_quotes(key) + "; known are: " + list);
     }
 }
 

@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json; ///< keeps the file's order of keys
 
 struct JsonLimits {
     std::uintmax_t max_bytes = 64u << 20;
-    int max_depth = 64;          ///< arrays and objects inside each other
+    int max_depth = 64; ///< arrays and objects inside each other
     std::size_t max_values = 5'000'000;
     std::size_t max_keys = 10'000; ///< in one object
 };
@@ -31,8 +31,8 @@ std::string read_text(std::istream& in, const std::string& name, std::uintmax_t 
 /// beyond a limit, a key given twice.
 Json parse_json(const std::string& text, const std::string& name, const JsonLimits& limits = {});
 
-/// A value and where it stands ("tee.json: panel \"front\", edge 3"). Every accessor throws InputError with the
-/// place, the key, what was expected and what was found.
+/// A value and where it stands ("tee.json: panel \"front\", edge 3"). Every accessor throws InputError with
+/// the place, the key, what was expected and what was found.
 class JsonView {
 public:
     JsonView(const Json& value, std::string place) : value_(&value), place_(std::move(place)) {}
@@ -54,13 +54,14 @@ public:
     /// Refuses members other than these.
     void expect_keys(std::initializer_list<const char*> keys) const;
 
-    double number() const;                                       ///< finite
-    double number(double low, double high) const;                ///< in [low, high]
-    int integer(int low, int high) const;                        ///< in [low, high]
-    bool boolean() const;                                        ///< true, false, 0 or 1
+    double number() const;                        ///< finite
+    double number(double low, double high) const; ///< in [low, high]
+    int integer(int low, int high) const;         ///< in [low, high]
+    bool boolean() const;                         ///< true, false, 0 or 1
     std::string string() const;
 
-    [[noreturn]] void fail(const std::string& expected) const;   ///< "<place> must be <expected>, but is <value>"
+    [[noreturn]] void
+    fail(const std::string& expected) const; ///< "<place> must be <expected>, but is <value>"
 
 private:
     const Json* value_;

@@ -37,7 +37,9 @@ Curve read_curve(const JsonView& v, const Edge& edge, const EdgeConventions& as)
 
 } // namespace
 
-double read_unit(const JsonView& properties) { return 1 / properties.at("units_in_meter").number(1e-3, 1e6); }
+double read_unit(const JsonView& properties) {
+    return 1 / properties.at("units_in_meter").number(1e-3, 1e6);
+}
 
 double read_length(const JsonView& v, double metres) {
     const double x = v.number() * metres;

@@ -43,7 +43,8 @@ Conventions read_conventions(const JsonView& root) {
     }
     if (properties.has("normalize_panel_translation"))
         c.centre_panels = properties.at("normalize_panel_translation").boolean();
-    c.normalise_loops = !properties.has("normalized_edge_loops") || !properties.at("normalized_edge_loops").boolean();
+    c.normalise_loops =
+        !properties.has("normalized_edge_loops") || !properties.at("normalized_edge_loops").boolean();
     return c;
 }
 
@@ -61,11 +62,12 @@ Mat3 read_rotation(const JsonView& v) {
     const auto radians = [&](int k) { return v.at(k, "angle").number(-1e6, 1e6) * (EIGEN_PI / 180); };
     const Vec3 r(radians(0), radians(1), radians(2));
     using Turn = Eigen::AngleAxisd;
-    return (Turn(r.z(), Vec3::UnitZ()) * Turn(r.y(), Vec3::UnitY()) * Turn(r.x(), Vec3::UnitX())).toRotationMatrix();
+    return (Turn(r.z(), Vec3::UnitZ()) * Turn(r.y(), Vec3::UnitY()) * Turn(r.x(), Vec3::UnitX()))
+        .toRotationMatrix();
 }
 
-/// Moves the panel's origin to the mean of its vertices, as the files' own loader does: the translation takes up
-/// the shift before rotation.
+/// Moves the panel's origin to the mean of its vertices, as the files' own loader does: the translation takes
+/// up the shift before rotation.
 void centre(std::vector<Vec2>& vertices, Vec3& translation) {
     Vec2 mean = Vec2::Zero();
     for (const Vec2& v : vertices)
@@ -75,7 +77,9 @@ void centre(std::vector<Vec2>& vertices, Vec3& translation) {
     translation.head<2>() += mean;
 }
 
-Vec2 mirrored(const Vec2& p) { return {-p.x(), p.y()}; }
+Vec2 mirrored(const Vec2& p) {
+    return {-p.x(), p.y()};
+}
 
 Curve mirrored(const Curve& curve) {
     if (auto* q = std::get_if<Quadratic>(&curve)) return Quadratic{mirrored(q->control)};
@@ -84,9 +88,9 @@ Curve mirrored(const Curve& curve) {
     return curve;
 }
 
-/// Files before 2023 draw some panels clockwise and mean the loader to turn them over: mirrored in the plane and
-/// turned by 180 degrees about y, which leaves the cloth where it is, and with the x of the translation negated,
-/// which does not (the files count on it). Edge numbers stay those of the file.
+/// Files before 2023 draw some panels clockwise and mean the loader to turn them over: mirrored in the plane
+/// and turned by 180 degrees about y, which leaves the cloth where it is, and with the x of the translation
+/// negated, which does not (the files count on it). Edge numbers stay those of the file.
 void turn_over(Panel& panel) {
     for (Edge& e : panel.outline)
         e = {mirrored(e.start), mirrored(e.end), mirrored(e.curve), e.label};
@@ -112,7 +116,8 @@ Panel read_panel(const JsonView& v, const std::string& name, Reader& reader) {
         throw InputError(v.place() + ": the pattern has more than " + std::to_string(max_edges) +
                          " edges, the most that is read");
     for (std::size_t i = 0; i < edges.value().size(); ++i)
-        panel.outline.push_back(read_edge(v.below(edges.value()[i], "edge " + std::to_string(i)), vertices, as));
+        panel.outline.push_back(
+            read_edge(v.below(edges.value()[i], "edge " + std::to_string(i)), vertices, as));
     if (as.normalise_loops && signed_area(panel.outline) < 0) turn_over(panel);
     return panel;
 }
@@ -126,7 +131,8 @@ EdgeSpan read_stitch_side(const JsonView& v, const Reader& reader) {
     const JsonView number = v.at("edge");
     const double edge = number.value().is_number_integer() ? number.number() : -1;
     if (edge < 0 || edge >= count)
-        number.fail("the number of an edge of panel " + in_quotes(found->first) + ", 0 to " + std::to_string(count - 1));
+        number.fail("the number of an edge of panel " + in_quotes(found->first) + ", 0 to " +
+                    std::to_string(count - 1));
     return {found->second, int(edge), 0, 1};
 }
 
@@ -176,7 +182,8 @@ void read_stitches(const JsonView& pattern, const std::string& file, Reader& rea
 Pattern read(const std::string& text, const std::string& name) {
     const Json json = parse_json(text, name);
     const JsonView root(json, name);
-    if (!json.is_object()) root.fail("a GarmentCode specification (an object with \"pattern\" and \"properties\")");
+    if (!json.is_object())
+        root.fail("a GarmentCode specification (an object with \"pattern\" and \"properties\")");
     Reader reader;
     const JsonView pattern = root.at("pattern");
     reader.as = read_conventions(root);

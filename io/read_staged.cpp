@@ -50,10 +50,11 @@ private:
     void check_flat() const {
         for (int t = 0; t < int(g_.triangles.size()); ++t) {
             const Mat2& e = g_.rest.edges[t];
-            if (std::abs(e.determinant()) > 1e-9 * (e.col(0).squaredNorm() + e.col(1).squaredNorm())) continue;
+            if (std::abs(e.determinant()) > 1e-9 * (e.col(0).squaredNorm() + e.col(1).squaredNorm()))
+                continue;
             const Vec2& at = g_.uv[g_.triangles[t][0]];
-            refuse("triangle " + std::to_string(t) + " near vt (" + formatted(at.x()) + ", " + formatted(at.y()) +
-                   ") has no area in the flat");
+            refuse("triangle " + std::to_string(t) + " near vt (" + formatted(at.x()) + ", " +
+                   formatted(at.y()) + ") has no area in the flat");
         }
     }
 
@@ -76,8 +77,8 @@ private:
                 p /= per_metre;
             return;
         }
-        refuse("its edges in space (v) are " + formatted(ratio) + " times as long as in the flat (vt), which fits no unit; " +
-               "vt was expected in metres");
+        refuse("its edges in space (v) are " + formatted(ratio) +
+               " times as long as in the flat (vt), which fits no unit; " + "vt was expected in metres");
     }
 
     /// Mean distance of the cloth from the points of the body, of samples of both.
@@ -101,11 +102,12 @@ private:
         if (y <= z) return;
         for (Vec3& p : x_)
             p = {p.x(), p.z(), -p.y()};
-        notes_.push_back(name_ + " has z up: so it starts out " + formatted(100 * z) + " cm from the body on average, and " +
-                         formatted(100 * y) + " cm with y up");
+        notes_.push_back(name_ + " has z up: so it starts out " + formatted(100 * z) +
+                         " cm from the body on average, and " + formatted(100 * y) + " cm with y up");
     }
 
-    /// Panels are connected pieces of the flat mesh, in the order of their first vertex, called by the file's group.
+    /// Panels are connected pieces of the flat mesh, in the order of their first vertex, called by the file's
+    /// group.
     void split_panels() {
         const std::vector<std::string> groups = std::move(g_.panel_names);
         const std::vector<int> piece = pieces(g_.triangles, int(g_.uv.size()));
@@ -138,8 +140,9 @@ private:
             if (s == 0) s = now;
             if (s == now) continue;
             const Vec2& at = g_.uv[g_.triangles[t][0]];
-            refuse("panel \"" + g_.panel_names[g_.panel_of_triangle[t]] + "\" is folded over in the flat near vt (" +
-                   formatted(at.x()) + ", " + formatted(at.y()) + "): its triangles run both ways round");
+            refuse("panel \"" + g_.panel_names[g_.panel_of_triangle[t]] +
+                   "\" is folded over in the flat near vt (" + formatted(at.x()) + ", " + formatted(at.y()) +
+                   "): its triangles run both ways round");
         }
     }
 
@@ -148,7 +151,8 @@ private:
         std::set<std::tuple<int, int, int, double>> seen;
         for (Stitch s : g_.stitches) {
             if (!(s.r >= 0 && s.r <= 1))
-                refuse("a stitch of node " + std::to_string(s.a) + " has r " + formatted(s.r) + "; 0 to 1 was expected");
+                refuse("a stitch of node " + std::to_string(s.a) + " has r " + formatted(s.r) +
+                       "; 0 to 1 was expected");
             if (s.r == 0) s.b[1] = s.b[0];
             if (s.r == 1) s.b[0] = s.b[1], s.r = 0;
             if (s.b[0] == s.b[1]) s.r = 0;
@@ -174,7 +178,8 @@ private:
 
     bool border(int e) const { return g_.edges.triangles_at(e) == 1; }
 
-    /// A seam is what joins one pair of panels; a stitch stands for half of every stitched border edge at its node.
+    /// A seam is what joins one pair of panels; a stitch stands for half of every stitched border edge at its
+    /// node.
     void name_seams() {
         const std::vector<int> vertex = vertex_of_node();
         const auto panel = [&](int node) { return g_.panel_of_vertex[vertex[node]]; };

@@ -33,7 +33,9 @@ std::string said(const Vec2& p) {
     return "(" + formatted("%.1f", p.x() * 100) + ", " + formatted("%.1f", p.y() * 100) + ") cm";
 }
 
-std::string percent(double share) { return formatted("%.0f %%", share * 100); }
+std::string percent(double share) {
+    return formatted("%.0f %%", share * 100);
+}
 
 std::string called(const Panel& panel) {
     constexpr std::size_t most = 60;
@@ -117,14 +119,17 @@ public:
             check_elastic(e);
         for (const Pin& p : pattern_.pins)
             check_span(p.span, "A pin");
-        if (dropped_ > 0) issues_.push_back({Severity::note, std::to_string(dropped_) + " more issues are not listed"});
+        if (dropped_ > 0)
+            issues_.push_back({Severity::note, std::to_string(dropped_) + " more issues are not listed"});
         return std::move(issues_);
     }
 
 private:
     void add(Severity severity, const std::string& text) {
-        if (int(issues_.size()) < options_.max_issues) issues_.push_back({severity, text});
-        else ++dropped_;
+        if (int(issues_.size()) < options_.max_issues)
+            issues_.push_back({severity, text});
+        else
+            ++dropped_;
     }
     void error(const std::string& text) { add(Severity::error, text); }
     void warn(const std::string& text) { add(Severity::warning, text); }
@@ -135,8 +140,8 @@ private:
             for (const Part& part : parts_of(panel))
                 edges += part.edges->size();
         if (edges <= std::size_t(options_.max_edges)) return true;
-        error("The pattern has " + std::to_string(edges) + " edges; at most " + std::to_string(options_.max_edges) +
-              " are accepted");
+        error("The pattern has " + std::to_string(edges) + " edges; at most " +
+              std::to_string(options_.max_edges) + " are accepted");
         return false;
     }
 
@@ -156,7 +161,8 @@ private:
             error("The placement or grain of " + called(panel) + " is not finite; numbers were expected");
             return false;
         }
-        if ((at.rotation * at.rotation.transpose() - Mat3::Identity()).norm() > 1e-6 || at.rotation.determinant() < 0)
+        if ((at.rotation * at.rotation.transpose() - Mat3::Identity()).norm() > 1e-6 ||
+            at.rotation.determinant() < 0)
             error("The rotation of " + called(panel) + " is not a rotation");
         if (at.translation.norm() > options_.max_translation)
             error(capital(called(panel)) + " starts " + said(at.translation.norm()) +
@@ -226,7 +232,8 @@ private:
         const double area = std::abs(signed_area(panel.outline)), round = length(panel.outline);
         if (area > 1e-6 * round * round) return true;
         error(capital(called(panel)) + " encloses no area: it has " + std::to_string(panel.outline.size()) +
-              " edges round " + formatted("%.3g cm2", area * 1e4) + "; at least three edges round a surface were expected");
+              " edges round " + formatted("%.3g cm2", area * 1e4) +
+              "; at least three edges round a surface were expected");
         return false;
     }
 
@@ -239,7 +246,8 @@ private:
         for (std::size_t i = 0; i < std::min(most, found.size()); ++i)
             report_crossing(panel, parts, found[i]);
         if (found.size() > most)
-            error(capital(called(panel)) + " crosses itself in " + std::to_string(found.size() - most) + " more pairs of edges");
+            error(capital(called(panel)) + " crosses itself in " + std::to_string(found.size() - most) +
+                  " more pairs of edges");
         return found.empty();
     }
 
@@ -249,8 +257,10 @@ private:
         const std::string b = parts[c.chain_b].prefix + "edge " + std::to_string(c.edge_b);
         const std::string in = "In " + called(panel) + ", ";
         const std::string expected = "; the lines of a panel must not meet except at shared corners";
-        if (a == b) error(in + a + (c.touch ? " touches itself" : " crosses itself") + at + expected);
-        else error(in + a + (c.touch ? " touches " : " crosses ") + b + at + expected);
+        if (a == b)
+            error(in + a + (c.touch ? " touches itself" : " crosses itself") + at + expected);
+        else
+            error(in + a + (c.touch ? " touches " : " crosses ") + b + at + expected);
     }
 
     void check_holes(const Panel& panel) {
@@ -259,7 +269,8 @@ private:
                 error("In " + called(panel) + ", hole " + std::to_string(i) + " lies outside the outline");
         for (std::size_t i = 0; i < panel.lines.size(); ++i)
             if (!contains(panel.outline, point_at(panel.lines[i].edges.front(), 0.5)))
-                error("In " + called(panel) + ", inner line " + std::to_string(i) + " lies outside the outline");
+                error("In " + called(panel) + ", inner line " + std::to_string(i) +
+                      " lies outside the outline");
     }
 
     void check_scale() {
@@ -276,14 +287,15 @@ private:
         }
         const Panel& panel = pattern_.panels[s.panel];
         if (s.edge < 0 || s.edge >= int(panel.outline.size())) {
-            error(who + " names edge " + std::to_string(s.edge) + " of " + called(panel) + ", which has edges 0 to " +
-                  std::to_string(int(panel.outline.size()) - 1));
+            error(who + " names edge " + std::to_string(s.edge) + " of " + called(panel) +
+                  ", which has edges 0 to " + std::to_string(int(panel.outline.size()) - 1));
             return false;
         }
         const auto fraction = [](double t) { return t >= 0 && t <= 1; };
         if (fraction(s.t0) && fraction(s.t1) && s.t0 != s.t1) return true;
         error(who + " takes edge " + std::to_string(s.edge) + " of " + called(panel) + " from " +
-              formatted("%g", s.t0) + " to " + formatted("%g", s.t1) + "; two different fractions from 0 to 1 were expected");
+              formatted("%g", s.t0) + " to " + formatted("%g", s.t1) +
+              "; two different fractions from 0 to 1 were expected");
         return false;
     }
 
@@ -320,10 +332,14 @@ private:
     void check_lengths(const Seam& seam, const std::string& name) {
         const SeamLengths l = seam_lengths(pattern_, seam);
         if (!(l.ease > options_.note_ease)) return;
-        const std::string text = name + " joins " + said(l.a) + " to " + said(l.b) + ", an ease of " + percent(l.ease);
-        if (l.ease > options_.max_ease) error(text + "; at most " + percent(options_.max_ease) + " was expected");
-        else if (l.ease > options_.warn_ease) warn(text);
-        else add(Severity::note, text);
+        const std::string text =
+            name + " joins " + said(l.a) + " to " + said(l.b) + ", an ease of " + percent(l.ease);
+        if (l.ease > options_.max_ease)
+            error(text + "; at most " + percent(options_.max_ease) + " was expected");
+        else if (l.ease > options_.warn_ease)
+            warn(text);
+        else
+            add(Severity::note, text);
     }
 
     void check_twist(const Seam& seam, const std::string& name) {
@@ -353,10 +369,14 @@ private:
     }
 
     void report_overlap(const Use& a, const Use& b) {
-        const std::string where = "edge " + std::to_string(a.edge) + " of " + called(pattern_.panels[a.panel]);
+        const std::string where =
+            "edge " + std::to_string(a.edge) + " of " + called(pattern_.panels[a.panel]);
         const std::string one = pattern_.seams[a.seam].name, two = pattern_.seams[b.seam].name;
-        if (a.seam == b.seam) error(capital(one) + " takes the same part of " + where + " twice");
-        else error(capital(one) + " and " + two + " overlap on " + where + "; a part of an edge can be sewn once");
+        if (a.seam == b.seam)
+            error(capital(one) + " takes the same part of " + where + " twice");
+        else
+            error(capital(one) + " and " + two + " overlap on " + where +
+                  "; a part of an edge can be sewn once");
     }
 
     void check_unsewn() {
@@ -372,9 +392,11 @@ private:
         if (!check_span(e.span, "An elastic")) return;
         const std::string on = "The elastic on edge " + std::to_string(e.span.edge) + " of " +
                                called(pattern_.panels[e.span.panel]);
-        if (!(e.ratio > 0 && e.ratio <= 1)) error(on + " has ratio " + formatted("%g", e.ratio) + "; above 0 and at most 1 was expected");
+        if (!(e.ratio > 0 && e.ratio <= 1))
+            error(on + " has ratio " + formatted("%g", e.ratio) + "; above 0 and at most 1 was expected");
         if (!(e.stiffness > 0 && std::isfinite(e.stiffness)))
-            error(on + " has stiffness " + formatted("%g", e.stiffness) + " N; a number above 0 was expected");
+            error(on + " has stiffness " + formatted("%g", e.stiffness) +
+                  " N; a number above 0 was expected");
     }
 
     const Pattern& pattern_;
@@ -424,7 +446,8 @@ std::vector<Issue> check(const Pattern& pattern, const CheckOptions& options) {
 }
 
 bool has_error(const std::vector<Issue>& issues) {
-    return std::any_of(issues.begin(), issues.end(), [](const Issue& i) { return i.severity == Severity::error; });
+    return std::any_of(issues.begin(), issues.end(),
+                       [](const Issue& i) { return i.severity == Severity::error; });
 }
 
 SeamLengths seam_lengths(const Pattern& pattern, const Seam& seam) {

@@ -7,7 +7,8 @@ namespace toile {
 
 enum class Severity { note, warning, error };
 
-/// One thing that is wrong, in a sentence that names panel, edge or seam. An error: the pattern cannot be draped.
+/// One thing that is wrong, in a sentence that names panel, edge or seam. An error: the pattern cannot be
+/// draped.
 struct Issue {
     Severity severity;
     std::string text;
@@ -19,22 +20,22 @@ struct SeamLengths {
 };
 
 struct CheckOptions {
-    double max_ease = 1.5;        ///< ratio - 1 above which a seam is an error (2.05 : 1 occurs in real ruffles)
-    double warn_ease = 0.5;       ///< above this a warning
-    double note_ease = 0.1;       ///< above this a note: gathers are a design, not a fault
-    double min_edge = 1e-4;       ///< metres; a shorter edge is degenerate
-    double max_extent = 20;       ///< metres; a larger panel has senseless units
-    double min_extent = 0.03;     ///< metres; a pattern whose largest panel is smaller has senseless units
+    double max_ease = 1.5;    ///< ratio - 1 above which a seam is an error (2.05 : 1 occurs in real ruffles)
+    double warn_ease = 0.5;   ///< above this a warning
+    double note_ease = 0.1;   ///< above this a note: gathers are a design, not a fault
+    double min_edge = 1e-4;   ///< metres; a shorter edge is degenerate
+    double max_extent = 20;   ///< metres; a larger panel has senseless units
+    double min_extent = 0.03; ///< metres; a pattern whose largest panel is smaller has senseless units
     double max_translation = 100; ///< metres; a panel that starts farther away has senseless units
-    double twist = 0.9;           ///< a seam is called twisted when the other direction is below this share as long
-    int max_edges = 100000;       ///< in the whole pattern
-    int max_issues = 100;         ///< further ones are counted, not listed
+    double twist = 0.9;     ///< a seam is called twisted when the other direction is below this share as long
+    int max_edges = 100000; ///< in the whole pattern
+    int max_issues = 100;   ///< further ones are counted, not listed
 };
 
 /// Everything wrong with a pattern: open loops, panels that cross or touch themselves (both edges named),
-/// degenerate edges, holes outside their panel, overlapping seam spans, seams that name nothing or join an edge to
-/// itself, length mismatches, twisted seams, senseless units, too many edges, NaN and infinity.
-/// In the order of panels, then seams; the same for the same pattern always.
+/// degenerate edges, holes outside their panel, overlapping seam spans, seams that name nothing or join an
+/// edge to itself, length mismatches, twisted seams, senseless units, too many edges, NaN and infinity. In
+/// the order of panels, then seams; the same for the same pattern always.
 std::vector<Issue> check(const Pattern& pattern, const CheckOptions& options = {});
 
 /// True when one of the issues is an error.
@@ -43,8 +44,8 @@ bool has_error(const std::vector<Issue>& issues);
 /// Lengths of both sides. The seam's spans must exist.
 SeamLengths seam_lengths(const Pattern& pattern, const Seam& seam);
 
-/// Mean distance between the two sides where the panels start out, sample by sample: as the seam says, and with
-/// side b walked the other way. The seam's spans must exist.
+/// Mean distance between the two sides where the panels start out, sample by sample: as the seam says, and
+/// with side b walked the other way. The seam's spans must exist.
 struct SeamSpan {
     double chosen = 0, other = 0; ///< metres
 };

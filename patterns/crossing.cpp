@@ -11,8 +11,8 @@
 namespace toile {
 namespace {
 
-/// A piece of an edge between grid points. Coordinates are whole numbers below 2^25 in size, so that the products
-/// in `side` are exact in double.
+/// A piece of an edge between grid points. Coordinates are whole numbers below 2^25 in size, so that the
+/// products in `side` are exact in double.
 struct Segment {
     Vec2 p, q;
     int chain = 0, edge = 0;
@@ -27,7 +27,9 @@ double side(const Vec2& a, const Vec2& b, const Vec2& c) {
 struct Grid {
     Vec2 origin;
     double cell;
-    Vec2 to(const Vec2& p) const { return {std::round((p.x() - origin.x()) / cell), std::round((p.y() - origin.y()) / cell)}; }
+    Vec2 to(const Vec2& p) const {
+        return {std::round((p.x() - origin.x()) / cell), std::round((p.y() - origin.y()) / cell)};
+    }
     Vec2 from(const Vec2& g) const { return origin + cell * g; }
 };
 
@@ -62,7 +64,8 @@ bool in_box(const Segment& s, const Vec2& p) {
 }
 
 Meeting meeting(const Segment& s, const Segment& t, Vec2& at) {
-    const double p = side(s.p, s.q, t.p), q = side(s.p, s.q, t.q), a = side(t.p, t.q, s.p), b = side(t.p, t.q, s.q);
+    const double p = side(s.p, s.q, t.p), q = side(s.p, s.q, t.q), a = side(t.p, t.q, s.p),
+                 b = side(t.p, t.q, s.q);
     if (((p > 0 && q < 0) || (p < 0 && q > 0)) && ((a > 0 && b < 0) || (a < 0 && b > 0))) {
         at = s.p + a / (a - b) * (s.q - s.p);
         return Meeting::cross;
@@ -85,8 +88,8 @@ public:
             count_[s.chain] = std::max(count_[s.chain], s.place + 1);
     }
 
-    /// Sort and sweep along the axis on which the segments overlap less: near-linear for every outline that is
-    /// not a comb at 45 degrees.
+    /// Sort and sweep along the axis on which the segments overlap less: near-linear for every outline that
+    /// is not a comb at 45 degrees.
     std::vector<Crossing> run() {
         double spread[2] = {0, 0};
         for (const Segment& s : segments_)
@@ -100,7 +103,8 @@ public:
             const Segment& s = segments_[i];
             std::erase_if(active, [&](int j) { return segments_[j].high[axis] < s.low[axis]; });
             for (int j : active)
-                if (segments_[j].high[1 - axis] >= s.low[1 - axis] && segments_[j].low[1 - axis] <= s.high[1 - axis])
+                if (segments_[j].high[1 - axis] >= s.low[1 - axis] &&
+                    segments_[j].low[1 - axis] <= s.high[1 - axis])
                     look(segments_[j], s);
             active.push_back(i);
         }
@@ -120,7 +124,8 @@ private:
         }
         Vec2 at;
         const Meeting m = meeting(s, t, at);
-        if (m == Meeting::none || (m == Meeting::touch && touch_allowed(s, t)) || at_shared_corner(s, t, at)) return;
+        if (m == Meeting::none || (m == Meeting::touch && touch_allowed(s, t)) || at_shared_corner(s, t, at))
+            return;
         add(s, t, at, m == Meeting::touch);
     }
 

@@ -26,8 +26,8 @@ struct CrossingOptions {
 };
 
 /// Pairs of edges that cross, or touch where they are not neighbours, each pair once, sorted; at most about a
-/// thousand. All coordinates must be finite and all edges of the panel's chains within `extent` metres of each other.
-/// Decided exactly for points rounded to a grid of extent / 2^24, at least a micrometre.
+/// thousand. All coordinates must be finite and all edges of the panel's chains within `extent` metres of
+/// each other. Decided exactly for points rounded to a grid of extent / 2^24, at least a micrometre.
 std::vector<Crossing> find_crossings(const std::vector<Chain>& chains, double extent,
                                      const CrossingOptions& options = {});
 

@@ -7,7 +7,9 @@
 namespace toile {
 namespace {
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross(const Vec2& a, const Vec2& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
 
 Vec2 turned(const Vec2& v, double angle) {
     const double c = std::cos(angle), s = std::sin(angle);
@@ -36,8 +38,10 @@ Polynomial polynomial(const Edge& e, const Cubic& k) {
 
 /// Gauss-Legendre with 8 points on [u0, u1].
 double quadrature(const Polynomial& p, double u0, double u1) {
-    static constexpr double x[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267, 0.9602898564975363};
-    static constexpr double w[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745, 0.1012285362903763};
+    static constexpr double x[] = {0.1834346424956498, 0.5255324099163290, 0.7966664774136267,
+                                   0.9602898564975363};
+    static constexpr double w[] = {0.3626837833783620, 0.3137066458778873, 0.2223810344533745,
+                                   0.1012285362903763};
     const double middle = 0.5 * (u0 + u1), half = 0.5 * (u1 - u0);
     double sum = 0;
     for (int i = 0; i < 4; ++i)
@@ -93,7 +97,9 @@ private:
     std::vector<double> u_, s_;
 };
 
-bool finite(const Polynomial& p) { return p.c1.allFinite() && p.c2.allFinite() && p.c3.allFinite(); }
+bool finite(const Polynomial& p) {
+    return p.c1.allFinite() && p.c2.allFinite() && p.c3.allFinite();
+}
 
 double bezier_length(const Polynomial& p) {
     return finite(p) ? LengthTable(p).total() : std::numeric_limits<double>::quiet_NaN();
@@ -166,7 +172,8 @@ struct Parameters {
     }
 };
 
-/// Twice the area between the edge's chord and the edge, positive where the edge bulges to the right of travel.
+/// Twice the area between the edge's chord and the edge, positive where the edge bulges to the right of
+/// travel.
 struct Bulge {
     const Edge& e;
     double operator()(const Straight&) const { return 0; }
@@ -197,8 +204,8 @@ std::vector<double> equal_fractions(double t0, double t1, int n) {
     return fractions;
 }
 
-/// Largest distance of the curve from its polyline with n intervals. Looked at in steps of the parameter, which are
-/// short where the curve turns sharply.
+/// Largest distance of the curve from its polyline with n intervals. Looked at in steps of the parameter,
+/// which are short where the curve turns sharply.
 double sag(const Edge& edge, int n) {
     constexpr int parts = 16;
     const std::vector<double> u = std::visit(Parameters{edge, equal_fractions(0, 1, n)}, edge.curve);
@@ -206,7 +213,8 @@ double sag(const Edge& edge, int n) {
     for (int i = 0; i < n; ++i) {
         const Vec2 a = point_at(edge, u[i]), b = point_at(edge, u[i + 1]);
         for (int k = 1; k < parts; ++k)
-            worst = std::max(worst, distance_to_segment(point_at(edge, u[i] + (u[i + 1] - u[i]) * k / parts), a, b));
+            worst = std::max(worst,
+                             distance_to_segment(point_at(edge, u[i] + (u[i + 1] - u[i]) * k / parts), a, b));
     }
     return worst;
 }
@@ -238,7 +246,9 @@ Vec2 tangent_at(const Edge& edge, double u) {
     return n > 0 ? Vec2(d / n) : Vec2(Vec2::Zero());
 }
 
-double length(const Edge& edge) { return std::visit(LengthOf{edge}, edge.curve); }
+double length(const Edge& edge) {
+    return std::visit(LengthOf{edge}, edge.curve);
+}
 
 double length(const Loop& loop) {
     double sum = 0;

@@ -149,27 +149,42 @@ TEST_CASE("a companion beside the pattern is read with it") {
     std::ofstream(folder / "shirt.toile.json") << R"({"toile": 1, "fabric": "silk"})";
     CHECK(read_pattern(folder / "shirt.json").fabric == "silk");
     std::ofstream(folder / "shirt.toile.json") << R"({"toile": 1, "fabrik": "silk"})";
-    CHECK_THROWS_WITH(read_pattern(folder / "shirt.json"), Contains("shirt.toile.json") && Contains("\"fabrik\""));
+    CHECK_THROWS_WITH(read_pattern(folder / "shirt.json"),
+                      Contains("shirt.toile.json") && Contains("\"fabrik\""));
     CHECK(companion_path("a.b/shirt_specification.json") == "a.b/shirt_specification.toile.json");
 }
 
 TEST_CASE("what a companion gets wrong is named") {
     CHECK(refusal(full) == "read");
     CHECK(refusal("{}") == "sample.toile.json lacks the key \"toile\"");
-    CHECK_THAT(refusal(replaced(full, "\"toile\": 1", "\"toile\": 2")), Contains("\"toile\" must be a whole number from 1 to 1, but is 2"));
-    CHECK_THAT(refusal(replaced(full, "\"denim\"", "\"demin\"")), Contains("panel \"front\", \"fabric\" must be one of poplin, "));
-    CHECK_THAT(refusal(replaced(full, "\"pins\"", "\"pinns\"")), Contains("unknown key \"pinns\"; known are: toile, "));
-    CHECK_THAT(refusal(replaced(full, "\"layer\"", "\"lager\"")), Contains("panel \"front\" has the unknown key \"lager\""));
-    CHECK_THAT(refusal(replaced(full, "\"back\": {}", "\"bakc\": {}")), Contains("\"bakc\", which is no panel of the pattern"));
-    CHECK_THAT(refusal(replaced(full, "\"panel\": \"back\", \"edge\": 3", "\"panel\": \"left\", \"edge\": 3")),
-               Contains("\"pins\", item 0, \"panel\" must be the name of a panel of the pattern, but is \"left\""));
-    CHECK_THAT(refusal(replaced(full, "\"edge\": 3, \"from\": 0.25", "\"edge\": 4, \"from\": 0.25")), Contains("whole number from 0 to 3, but is 4"));
-    CHECK_THAT(refusal(replaced(full, "\"from\": 0.25, \"to\": 0.5}, {\"label\"", "\"from\": 0.5, \"to\": 0.5}, {\"label\"")), Contains("has no length"));
-    CHECK_THAT(refusal(replaced(full, "\"label\": \"waist\"", "\"label\": \"waste\"")), Contains("must be the label of an edge, but is \"waste\""));
-    CHECK_THAT(refusal(replaced(full, "\"ratio\": 0.8", "\"ratio\": 1.8")), Contains("\"ratio\" must be a number from 0.05 to 1, but is 1.8"));
-    CHECK_THAT(refusal(replaced(full, "\"kind\": \"fold\"", "\"kind\": \"crease\"")), Contains("must be \"fold\", \"pleat\" or \"cut\""));
-    CHECK_THAT(refusal(replaced(full, "\"right_to_wrong\"", "\"wrong\"")), Contains("\"seams\", item 0, \"faces\" must be"));
-    CHECK_THAT(refusal(replaced(full, "\"panel\": \"back\", \"edge\": 3, ", "")), Contains("lacks the key \"panel\" or \"label\""));
+    CHECK_THAT(refusal(replaced(full, "\"toile\": 1", "\"toile\": 2")),
+               Contains("\"toile\" must be a whole number from 1 to 1, but is 2"));
+    CHECK_THAT(refusal(replaced(full, "\"denim\"", "\"demin\"")),
+               Contains("panel \"front\", \"fabric\" must be one of poplin, "));
+    CHECK_THAT(refusal(replaced(full, "\"pins\"", "\"pinns\"")),
+               Contains("unknown key \"pinns\"; known are: toile, "));
+    CHECK_THAT(refusal(replaced(full, "\"layer\"", "\"lager\"")),
+               Contains("panel \"front\" has the unknown key \"lager\""));
+    CHECK_THAT(refusal(replaced(full, "\"back\": {}", "\"bakc\": {}")),
+               Contains("\"bakc\", which is no panel of the pattern"));
+    CHECK_THAT(
+        refusal(replaced(full, "\"panel\": \"back\", \"edge\": 3", "\"panel\": \"left\", \"edge\": 3")),
+        Contains("\"pins\", item 0, \"panel\" must be the name of a panel of the pattern, but is \"left\""));
+    CHECK_THAT(refusal(replaced(full, "\"edge\": 3, \"from\": 0.25", "\"edge\": 4, \"from\": 0.25")),
+               Contains("whole number from 0 to 3, but is 4"));
+    CHECK_THAT(refusal(replaced(full, "\"from\": 0.25, \"to\": 0.5}, {\"label\"",
+                                "\"from\": 0.5, \"to\": 0.5}, {\"label\"")),
+               Contains("has no length"));
+    CHECK_THAT(refusal(replaced(full, "\"label\": \"waist\"", "\"label\": \"waste\"")),
+               Contains("must be the label of an edge, but is \"waste\""));
+    CHECK_THAT(refusal(replaced(full, "\"ratio\": 0.8", "\"ratio\": 1.8")),
+               Contains("\"ratio\" must be a number from 0.05 to 1, but is 1.8"));
+    CHECK_THAT(refusal(replaced(full, "\"kind\": \"fold\"", "\"kind\": \"crease\"")),
+               Contains("must be \"fold\", \"pleat\" or \"cut\""));
+    CHECK_THAT(refusal(replaced(full, "\"right_to_wrong\"", "\"wrong\"")),
+               Contains("\"seams\", item 0, \"faces\" must be"));
+    CHECK_THAT(refusal(replaced(full, "\"panel\": \"back\", \"edge\": 3, ", "")),
+               Contains("lacks the key \"panel\" or \"label\""));
     CHECK_THAT(refusal("[]"), Contains("must be an object"));
     CHECK_THAT(refusal("{"), Contains("not valid JSON"));
 }

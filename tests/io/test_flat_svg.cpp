@@ -72,7 +72,8 @@ struct Box {
 std::vector<Box> panel_boxes(const std::string& svg) {
     std::vector<Box> boxes;
     for (std::string d : matches(svg, "class=\"panel\" d=\"([^\"]*)\"")) {
-        std::replace_if(d.begin(), d.end(), [](char c) { return c == 'M' || c == 'L' || c == 'Z'; }, ' ');
+        std::replace_if(
+            d.begin(), d.end(), [](char c) { return c == 'M' || c == 'L' || c == 'Z'; }, ' ');
         std::istringstream in(d);
         Box b{1e9, -1e9, 1e9, -1e9};
         for (double x, y; in >> x >> y;)
@@ -106,8 +107,8 @@ TEST_CASE("panels lie beside each other at full size in millimetres") {
         CHECK(boxes[i].right < width);
         CHECK(boxes[i].bottom < height);
         for (int k = 0; k < i; ++k)
-            CHECK((boxes[i].left > boxes[k].right || boxes[k].left > boxes[i].right || boxes[i].top > boxes[k].bottom ||
-                   boxes[k].top > boxes[i].bottom));
+            CHECK((boxes[i].left > boxes[k].right || boxes[k].left > boxes[i].right ||
+                   boxes[i].top > boxes[k].bottom || boxes[k].top > boxes[i].bottom));
     }
 }
 
@@ -121,7 +122,8 @@ TEST_CASE("outlines are drawn with their real curves, y upward") {
                      {{0, 0.4}, {0, 0}, Arc{0.3, false, false}, {}}};
     p.panels = {panel};
     const std::string d = matches(flat_svg(p), "class=\"panel\" d=\"([^\"]*)\"").at(0);
-    static const std::regex form(R"(M([0-9.]+) ([0-9.]+) Q[0-9. ]+ C?[0-9. ]*A250 250 0 0 0 [0-9.]+ [0-9.]+ C[0-9. ]+ A300 300 0 0 1 [0-9. ]+ Z)");
+    static const std::regex form(
+        R"(M([0-9.]+) ([0-9.]+) Q[0-9. ]+ C?[0-9. ]*A250 250 0 0 0 [0-9.]+ [0-9.]+ C[0-9. ]+ A300 300 0 0 1 [0-9. ]+ Z)");
     std::smatch m;
     INFO(d);
     REQUIRE(std::regex_match(d, m, form));
@@ -162,8 +164,8 @@ TEST_CASE("names, labels, grain, holes, lines, elastics and pins are drawn") {
     p.pins = {{{0, 0, 0.5, 0.7}}};
     const std::string svg = flat_svg(p);
     check_well_formed(svg);
-    for (const char* word : {">front<", ">denim<", ">layer 3<", ">upper<", ">elastic 0.75<", ">pinned<", ">10 cm<",
-                             "a &lt;b&gt; &amp; &quot;c&quot;", "class=\"grain\""})
+    for (const char* word : {">front<", ">denim<", ">layer 3<", ">upper<", ">elastic 0.75<", ">pinned<",
+                             ">10 cm<", "a &lt;b&gt; &amp; &quot;c&quot;", "class=\"grain\""})
         CHECK_THAT(svg, Contains(word));
     CHECK(matches(svg, "class=\"panel\" d=\"([^\"]*)\"").at(0).find(" M") != std::string::npos); // the hole
     CHECK_THAT(svg, !Contains("wrong side up"));
@@ -186,8 +188,9 @@ TEST_CASE("the picture is written, and a place that cannot be written is refused
 }
 
 TEST_CASE("real patterns are drawn with every panel and seam") {
-    for (const char* file : {"garmentcode/jumpsuit_specification.json", "garmentcode/rand_004_specification.json",
-                             "garmentcode/rand_006_specification.json", "garmentcode_2021/tee_hood.json"}) {
+    for (const char* file :
+         {"garmentcode/jumpsuit_specification.json", "garmentcode/rand_004_specification.json",
+          "garmentcode/rand_006_specification.json", "garmentcode_2021/tee_hood.json"}) {
         const auto path = test::test_data(file);
         if (!path) return;
         const Pattern p = read_pattern(*path);

@@ -30,7 +30,8 @@ const std::string specification = R"({"pattern": {"panels": {
   "stitches": [[{"panel": "front", "edge": 1}, {"panel": "back", "edge": 0}], [{"panel": "front", "edge": 3}, {"panel": "back", "edge": 2}, "right_wrong"]]},
  "properties": {"units_in_meter": 100, "curvature_coords": "relative", "normalize_panel_translation": false}})";
 
-const std::string companion = R"({"toile": 1, "fabric": "poplin", "panels": {"front": {"grain": 45, "layer": 1,
+const std::string companion =
+    R"({"toile": 1, "fabric": "poplin", "panels": {"front": {"grain": 45, "layer": 1,
   "holes": [{"vertices": [[10, 10], [15, 10], [10, 15]]}], "lines": [{"vertices": [[20, 20], [30, 20]], "kind": "fold", "angle": 90}]}},
   "pins": [{"panel": "back", "edge": 3, "from": 0.25, "to": 0.5}], "elastics": [{"label": "hem", "ratio": 0.8}],
   "seams": [{"a": {"panel": "front", "edge": 0}, "b": [{"panel": "back", "edge": 3, "to": 0.25}]}]})";
@@ -81,11 +82,20 @@ std::string mutated(std::string text, std::mt19937& random) {
     for (std::size_t k = 1 + pick(3); k-- > 0 && !text.empty();) {
         const std::size_t at = pick(text.size());
         switch (pick(5)) {
-        case 0: text[at] = char(random()); break;
-        case 1: text.erase(at, 1 + pick(20)); break;
-        case 2: text.insert(at, text.substr(pick(text.size()), 1 + pick(30))); break;
-        case 3: text[at] = "0123456789.-+eE[]{},:\"ntf/"[pick(26)]; break;
-        default: text.insert(at, std::string(1 + pick(3), "9e-0"[pick(4)]));
+        case 0:
+            text[at] = char(random());
+            break;
+        case 1:
+            text.erase(at, 1 + pick(20));
+            break;
+        case 2:
+            text.insert(at, text.substr(pick(text.size()), 1 + pick(30)));
+            break;
+        case 3:
+            text[at] = "0123456789.-+eE[]{},:\"ntf/"[pick(26)];
+            break;
+        default:
+            text.insert(at, std::string(1 + pick(3), "9e-0"[pick(4)]));
         }
     }
     return text;
@@ -96,8 +106,28 @@ void corrupt(nlohmann::json& j, std::mt19937& random) {
     nlohmann::json* at = &j;
     while (at->is_structured() && !at->empty() && random() % 8 != 0)
         at = &*std::next(at->begin(), int(random() % at->size()));
-    static const nlohmann::json values[] = {nullptr, true,  -1,     0,    1,    2,     3,     1e308, -1e308, 1e-300, 0.5, 4294967296, 18446744073709551615u,
-                                            "x",     "front", "circle", nlohmann::json::array(), nlohmann::json::object(), {1, 2}, {{1, 2}, {3, 4}}, 1e5, -25.0};
+    static const nlohmann::json values[] = {nullptr,
+                                            true,
+                                            -1,
+                                            0,
+                                            1,
+                                            2,
+                                            3,
+                                            1e308,
+                                            -1e308,
+                                            1e-300,
+                                            0.5,
+                                            4294967296,
+                                            18446744073709551615u,
+                                            "x",
+                                            "front",
+                                            "circle",
+                                            nlohmann::json::array(),
+                                            nlohmann::json::object(),
+                                            {1, 2},
+                                            {{1, 2}, {3, 4}},
+                                            1e5,
+                                            -25.0};
     *at = values[random() % std::size(values)];
 }
 
@@ -151,9 +181,12 @@ TEST_CASE("mutated companions are refused or read") {
 
 TEST_CASE("mutated staged meshes are refused or read") {
     std::string mesh;
-    for (const char* line : {"v 0 0 0.2", "v 1 0 0.2", "v 1 1 0.2", "v 0 1 0.2", "v 0 0 -0.2", "v 1 0 -0.2", "v 1 1 -0.2", "v 0 1 -0.2",
-                             "vt 0 0", "vt 1 0", "vt 1 1", "vt 0 1", "vt 2 0", "vt 3 0", "vt 3 1", "vt 2 1", "g front", "f 1/1 2/2 3/3",
-                             "f 1/1 3/3 4/4", "g back", "f 5/5 6/6 7/7", "f 5/5 7/7 8/8", "stitch 7 1 2 0.5", "l 2 5", "l 3 8"})
+    for (const char* line :
+         {"v 0 0 0.2",     "v 1 0 0.2",     "v 1 1 0.2",        "v 0 1 0.2",     "v 0 0 -0.2",
+          "v 1 0 -0.2",    "v 1 1 -0.2",    "v 0 1 -0.2",       "vt 0 0",        "vt 1 0",
+          "vt 1 1",        "vt 0 1",        "vt 2 0",           "vt 3 0",        "vt 3 1",
+          "vt 2 1",        "g front",       "f 1/1 2/2 3/3",    "f 1/1 3/3 4/4", "g back",
+          "f 5/5 6/6 7/7", "f 5/5 7/7 8/8", "stitch 7 1 2 0.5", "l 2 5",         "l 3 8"})
         mesh += std::string(line) + "\n";
     const test::TempFolder folder;
     CHECK(staged_outcome(folder / "x.obj", mesh) == Outcome::read);

@@ -166,17 +166,20 @@ TEST_CASE("the form of 2021 is read: control points, units, clockwise panels tur
     CHECK(placed(t, t.outline[1].end).isApprox(Vec3(1 - 0.1, 0.2, 0.3)));
     CHECK(t.placement.rotation.col(2).isApprox(Vec3(0, 0, -1)));
 
-    const Pattern kept = read(replaced(text, "\"units_in_meter\"", "\"normalized_edge_loops\": true, \"units_in_meter\""));
+    const Pattern kept =
+        read(replaced(text, "\"units_in_meter\"", "\"normalized_edge_loops\": true, \"units_in_meter\""));
     CHECK(signed_area(kept.panels[0].outline) < 0);
     CHECK(kept.panels[0].placement.translation.x() == Approx(0.1));
     CHECK(std::get<Quadratic>(kept.panels[0].outline[0].curve).control.isApprox(Vec2(-0.1, 0.25)));
 
-    const Pattern absolute = read(replaced(replaced(text, "[0.5, 0.2]", "[-30, 75]"), "\"relative\"", "\"absolute\""));
+    const Pattern absolute =
+        read(replaced(replaced(text, "[0.5, 0.2]", "[-30, 75]"), "\"relative\"", "\"absolute\""));
     CHECK(std::get<Quadratic>(absolute.panels[0].outline[0].curve).control.isApprox(Vec2(0.1, 0.25)));
 }
 
 TEST_CASE("panels are centred when the file asks for it") {
-    const Pattern p = read(replaced(sample_text, "\"normalize_panel_translation\": false", "\"normalize_panel_translation\": true"));
+    const Pattern p = read(replaced(sample_text, "\"normalize_panel_translation\": false",
+                                    "\"normalize_panel_translation\": true"));
     CHECK(p.panels[0].outline[0].start.isApprox(Vec2(-0.25, -0.2)));
     CHECK(p.panels[0].placement.translation.isApprox(Vec3(0.35, 0.4, 0.3)));
 }
@@ -213,46 +216,60 @@ TEST_CASE("missing keys are named with their place") {
     CHECK_THAT(refusal("\"stitches\"", "\"seams\""), Contains("lacks the key \"stitches\""));
     for (const char* key : {"\"translation\"", "\"rotation\"", "\"vertices\"", "\"edges\""})
         CHECK(refusal(key, "\"x\"") == "sample.json: panel \"front\" lacks the key " + std::string(key));
-    CHECK(refusal("\"endpoints\"", "\"ends\"") == "sample.json: panel \"front\", edge 0 lacks the key \"endpoints\"");
-    CHECK_THAT(refusal("\"params\"", "\"values\""), Contains("panel \"front\", edge 1, \"curvature\" lacks the key \"params\""));
+    CHECK(refusal("\"endpoints\"", "\"ends\"") ==
+          "sample.json: panel \"front\", edge 0 lacks the key \"endpoints\"");
+    CHECK_THAT(refusal("\"params\"", "\"values\""),
+               Contains("panel \"front\", edge 1, \"curvature\" lacks the key \"params\""));
     CHECK_THAT(refusal("{\"panel\": \"front\", \"edge\": 1}", "{\"panel\": \"front\"}"),
                Contains("stitch 0, side 0 lacks the key \"edge\""));
 }
 
 TEST_CASE("wrong types and values are named with place, expectation and finding") {
-    CHECK(refusal("[50, 40]", "[\"wide\", 40]") ==
-          "sample.json: panel \"front\", \"vertices\", vertex 2, coordinate 0 must be a number, but is \"wide\"");
+    CHECK(refusal("[50, 40]", "[\"wide\", 40]") == "sample.json: panel \"front\", \"vertices\", vertex 2, "
+                                                   "coordinate 0 must be a number, but is \"wide\"");
     CHECK_THAT(refusal("[50, 40]", "[50]"), Contains("vertex 2 must be an array of 2, but is an array of 1"));
-    CHECK_THAT(refusal("[50, 40]", "[1e308, 40]"), Contains("vertex 2, coordinate 0 must be a length, but is 1e+308"));
+    CHECK_THAT(refusal("[50, 40]", "[1e308, 40]"),
+               Contains("vertex 2, coordinate 0 must be a length, but is 1e+308"));
     CHECK_THAT(refusal("[10, 20, 30]", "[10, 20]"), Contains("\"translation\" must be an array of 3"));
     CHECK_THAT(refusal("[0, 0, 0]", "[0, 0, true]"), Contains("\"rotation\", angle 2 must be a number"));
-    CHECK_THAT(refusal("[0, 1]", "[0, 4]"), Contains("edge 0, \"endpoints\", number 1 must be the number of a vertex, 0 to 3, but is 4"));
+    CHECK_THAT(refusal("[0, 1]", "[0, 4]"),
+               Contains("edge 0, \"endpoints\", number 1 must be the number of a vertex, 0 to 3, but is 4"));
     CHECK_THAT(refusal("[0, 1]", "[-1, 1]"), Contains("the number of a vertex"));
     CHECK_THAT(refusal("[0, 1]", "[0.5, 1]"), Contains("the number of a vertex"));
     CHECK_THAT(refusal("[0, 1]", "[0, 99999999999999999999]"), Contains("the number of a vertex"));
-    CHECK_THAT(refusal("\"quadratic\"", "\"spline\""), Contains("\"type\" must be \"quadratic\", \"cubic\" or \"circle\", but is \"spline\""));
-    CHECK_THAT(refusal("[[0.5, 0.1]]", "[[0.5, 0.1], [0.5, 0.1]]"), Contains("\"params\" must be an array of 1"));
+    CHECK_THAT(refusal("\"quadratic\"", "\"spline\""),
+               Contains("\"type\" must be \"quadratic\", \"cubic\" or \"circle\", but is \"spline\""));
+    CHECK_THAT(refusal("[[0.5, 0.1]]", "[[0.5, 0.1], [0.5, 0.1]]"),
+               Contains("\"params\" must be an array of 1"));
     CHECK_THAT(refusal("[25, 0, 1]", "[-25, 0, 1]"), Contains("must be a radius above 0"));
     CHECK_THAT(refusal("[25, 0, 1]", "[25, 2, 1]"), Contains("must be true or false"));
-    CHECK_THAT(refusal("\"units_in_meter\": 100", "\"units_in_meter\": 0"), Contains("\"units_in_meter\" must be a number from"));
+    CHECK_THAT(refusal("\"units_in_meter\": 100", "\"units_in_meter\": 0"),
+               Contains("\"units_in_meter\" must be a number from"));
     CHECK_THAT(refusal("\"relative\"", "\"polar\""), Contains("must be \"relative\" or \"absolute\""));
-    CHECK_THAT(refusal("\"label\": \"body\"", "\"label\": 7"), Contains("\"label\" must be a string, but is 7"));
-    CHECK_THAT(refusal("\"right_wrong\"", "\"wrong_right\""), Contains("stitch 1, third member must be \"right_wrong\""));
+    CHECK_THAT(refusal("\"label\": \"body\"", "\"label\": 7"),
+               Contains("\"label\" must be a string, but is 7"));
+    CHECK_THAT(refusal("\"right_wrong\"", "\"wrong_right\""),
+               Contains("stitch 1, third member must be \"right_wrong\""));
     CHECK_THAT(refusal("\"panel\": \"back\", \"edge\": 0", "\"panel\": \"bakc\", \"edge\": 0"),
                Contains("stitch 0, side 1, \"panel\" must be the name of a panel, but is \"bakc\""));
     CHECK_THAT(refusal("\"panel\": \"back\", \"edge\": 0", "\"panel\": \"back\", \"edge\": 4"),
                Contains("must be the number of an edge of panel \"back\", 0 to 3, but is 4"));
-    CHECK_THAT(refusal(R"({"pattern": {"panels": {}, "stitches": []}, "properties": {"units_in_meter": 100}})"), Contains("has no panels"));
+    CHECK_THAT(
+        refusal(R"({"pattern": {"panels": {}, "stitches": []}, "properties": {"units_in_meter": 100}})"),
+        Contains("has no panels"));
 }
 
 TEST_CASE("too many edges are refused by a stated limit") {
     std::ostringstream text;
-    text << R"({"pattern": {"panels": {"p": {"translation": [0,0,0], "rotation": [0,0,0], "vertices": [[0,0],[1,0]], "edges": [)";
+    text
+        << R"({"pattern": {"panels": {"p": {"translation": [0,0,0], "rotation": [0,0,0], "vertices": [[0,0],[1,0]], "edges": [)";
     for (int i = 0; i <= 100'000; ++i)
         text << (i ? "," : "") << R"({"endpoints":[0,1]})";
     text << R"(]}}, "stitches": []}, "properties": {"units_in_meter": 100}})";
-    CHECK(refusal(text.str()) == "sample.json: panel \"p\": the pattern has more than 100000 edges, the most that is read");
-    CHECK(refusal(std::string((64u << 20) + 1, '[')) == "sample.json is larger than 64 MB, the most that is read");
+    CHECK(refusal(text.str()) ==
+          "sample.json: panel \"p\": the pattern has more than 100000 edges, the most that is read");
+    CHECK(refusal(std::string((64u << 20) + 1, '[')) ==
+          "sample.json is larger than 64 MB, the most that is read");
     std::string many = "[0";
     for (int i = 0; i < 5'000'000; ++i)
         many += ",0";

@@ -15,8 +15,8 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// Two squares of 1 m side by side in the flat, one behind the other in space. The second one's left side has a
-/// node in the middle, sewn to the inside of the first one's right side.
+/// Two squares of 1 m side by side in the flat, one behind the other in space. The second one's left side has
+/// a node in the middle, sewn to the inside of the first one's right side.
 const std::string sample = R"(# staged
 v 0 0 0.2
 v 1 0 0.2
@@ -116,13 +116,15 @@ TEST_CASE("a staged mesh becomes a garment with its positions, panels and stitch
     CHECK(g.borders[0].panel == 0);
     CHECK(g.borders[0].vertices.size() == 5);
     CHECK(g.borders[0].vertices.front() == g.borders[0].vertices.back());
-    CHECK(std::set<int>(g.borders[1].vertices.begin(), g.borders[1].vertices.end()) == std::set<int>{4, 5, 6, 7, 8});
+    CHECK(std::set<int>(g.borders[1].vertices.begin(), g.borders[1].vertices.end()) ==
+          std::set<int>{4, 5, 6, 7, 8});
 }
 
 TEST_CASE("panels are the connected pieces of the flat, whatever the groups say") {
     const StagedMesh s = staged(replaced(sample, "g back\n", ""));
     CHECK(s.garment.panel_names == std::vector<std::string>{"front_1", "front_2"});
-    const StagedMesh closed = staged(replaced(replaced(sample, "f 5/5 6/6 9/9", "f 2/5 6/6 9/9"), "l 2 5\n", ""));
+    const StagedMesh closed =
+        staged(replaced(replaced(sample, "f 5/5 6/6 9/9", "f 2/5 6/6 9/9"), "l 2 5\n", ""));
     CHECK(closed.garment.panel_names.size() == 2); // one node with two vt is a closed seam
     CHECK(closed.garment.node_of_vertex[4] == 1);
 }
@@ -167,16 +169,19 @@ TEST_CASE("what a staged mesh gets wrong is named") {
     CHECK_THAT(refusal(replaced(sample, "f 1/1 2/2 3/3", "f 1 2 3")), Contains("without vt"));
     CHECK_THAT(refusal(replaced(sample, "f 1/1 2/2 3/3", "f 1/1 2/2 3/30")), Contains("line 21"));
     CHECK_THAT(refusal(replaced(sample, "vt 2 0.5", "vt 2.5 1")), Contains("no area in the flat"));
-    CHECK_THAT(refusal(replaced(sample, "vt 2 0.5", "vt 3.5 0.5")), Contains("panel \"back\" is folded over"));
+    CHECK_THAT(refusal(replaced(sample, "vt 2 0.5", "vt 3.5 0.5")),
+               Contains("panel \"back\" is folded over"));
     CHECK_THAT(refusal(replaced(sample, "stitch 8 1 2 0.5", "stitch 8 1 2 1.5")), Contains("r 1.5"));
     CHECK_THAT(refusal(replaced(sample, "stitch 8 1 2 0.5", "stitch 8 1 99 0.5")), Contains("node 99"));
-    CHECK_THAT(refusal(replaced(sample, "stitch 8 1 2 0.5", "stitch 8 1 8 0.5")), Contains("edge that ends in it"));
+    CHECK_THAT(refusal(replaced(sample, "stitch 8 1 2 0.5", "stitch 8 1 8 0.5")),
+               Contains("edge that ends in it"));
     CHECK_THAT(refusal(replaced(sample, "v 0 1 0.2", "v 0 nan 0.2")), Contains("line 5"));
     CHECK(staged(replaced(sample, "l 2 5", "l 2 2")).garment.stitches.size() == 2);
 }
 
 TEST_CASE("a dress staged by another program is read on its body") {
-    const auto stage = test::test_data("cipc/dress_knife/stage.obj"), body = test::test_data("cipc/wm2_15k.obj");
+    const auto stage = test::test_data("cipc/dress_knife/stage.obj"),
+               body = test::test_data("cipc/wm2_15k.obj");
     if (!stage || !body) return;
     ReadAvatarOptions repair;
     repair.repair = true;
@@ -200,7 +205,8 @@ TEST_CASE("a dress staged by another program is read on its body") {
     // Every border node of the waist and the shoulders is near its partner: the file's seams join neighbours.
     double worst = 0;
     for (const Stitch& t : g.stitches)
-        worst = std::max(worst, (s.positions[t.a] - (1 - t.r) * s.positions[t.b[0]] - t.r * s.positions[t.b[1]]).norm());
+        worst = std::max(
+            worst, (s.positions[t.a] - (1 - t.r) * s.positions[t.b[0]] - t.r * s.positions[t.b[1]]).norm());
     CHECK(worst < 0.3);
     for (const Vec3& p : s.positions) {
         CHECK(std::abs(p.x()) < 0.34);

@@ -33,8 +33,10 @@ Pattern tube() {
     p.panels = {square("front"), square("back")};
     p.panels[0].placement.translation = {0, 0, 0.2};
     p.panels[1].placement.translation = {0, 0, -0.2};
-    p.seams.push_back({{{0, 1, 0, 1}}, {{1, 1, 0, 1}}, SeamFaces::right_to_right, "seam 0 (front.1 to back.1)"});
-    p.seams.push_back({{{0, 3, 0, 1}}, {{1, 3, 0, 1}}, SeamFaces::right_to_right, "seam 1 (front.3 to back.3)"});
+    p.seams.push_back(
+        {{{0, 1, 0, 1}}, {{1, 1, 0, 1}}, SeamFaces::right_to_right, "seam 0 (front.1 to back.1)"});
+    p.seams.push_back(
+        {{{0, 3, 0, 1}}, {{1, 3, 0, 1}}, SeamFaces::right_to_right, "seam 1 (front.3 to back.3)"});
     return p;
 }
 
@@ -60,7 +62,9 @@ TEST_CASE("a sound pattern has no issues") {
     CHECK_FALSE(has_error(check(tube())));
 }
 
-TEST_CASE("a pattern without panels is refused") { CHECK(says(issues(Pattern{}), {"no panels"})); }
+TEST_CASE("a pattern without panels is refused") {
+    CHECK(says(issues(Pattern{}), {"no panels"}));
+}
 
 TEST_CASE("an open loop is named with both ends") {
     Pattern p = tube();
@@ -97,18 +101,21 @@ TEST_CASE("an outline that touches itself is refused, shared corners and darts a
     CHECK(says(issues(p), {"edge 0 touches edge 2"}));
 
     // A narrow dart: 2 mm wide, 12 cm deep.
-    p.panels[0].outline = polygon({{0, 0}, {0.5, 0}, {0.5, 0.5}, {0.251, 0.5}, {0.25, 0.38}, {0.249, 0.5}, {0, 0.5}});
+    p.panels[0].outline =
+        polygon({{0, 0}, {0.5, 0}, {0.5, 0.5}, {0.251, 0.5}, {0.25, 0.38}, {0.249, 0.5}, {0, 0.5}});
     p.seams = {{{{0, 3, 0, 1}}, {{0, 4, 1, 0}}, SeamFaces::right_to_right, "dart"}};
     CHECK(issues(p).empty());
 
     // A slit without width, out and back on one line, is no dart.
-    p.panels[0].outline = polygon({{0, 0}, {0.5, 0}, {0.5, 0.5}, {0.25, 0.5}, {0.25, 0.38}, {0.25, 0.5}, {0, 0.5}});
+    p.panels[0].outline =
+        polygon({{0, 0}, {0.5, 0}, {0.5, 0.5}, {0.25, 0.5}, {0.25, 0.38}, {0.25, 0.5}, {0, 0.5}});
     CHECK(says(issues(p), {"edge 3 touches edge 4"}));
 }
 
 TEST_CASE("curves that leave a corner along each other do not cross there") {
     Pattern p = tube();
-    Loop& o = p.panels[0].outline; // both edges at the first corner start out near 48 degrees, 5 degrees apart
+    Loop& o =
+        p.panels[0].outline; // both edges at the first corner start out near 48 degrees, 5 degrees apart
     const Vec2 a(std::cos(0.80), std::sin(0.80)), b(std::cos(0.88), std::sin(0.88));
     o[0].curve = Cubic{0.15 * a, {0.4, 0}};
     o[3].curve = Cubic{{0, 0.4}, 0.15 * b};
@@ -253,7 +260,8 @@ TEST_CASE("the number of edges is limited") {
 TEST_CASE("holes and inner lines are checked like outlines") {
     Pattern p = tube();
     p.panels[0].holes = {polygon({{0.1, 0.1}, {0.1, 0.2}, {0.2, 0.2}})};
-    p.panels[0].lines = {{{{{0, 0.25}, {0.5, 0.3}, Straight{}, {}}}, InnerLineKind::fold, 0}}; // ends on the outline
+    p.panels[0].lines = {
+        {{{{0, 0.25}, {0.5, 0.3}, Straight{}, {}}}, InnerLineKind::fold, 0}}; // ends on the outline
     CHECK(issues(p).empty());
     p.panels[0].lines[0].edges[0].end = {0.6, 0.3};
     CHECK(says(issues(p), {"edge 1 crosses inner line 0, edge 0"}));
@@ -262,7 +270,8 @@ TEST_CASE("holes and inner lines are checked like outlines") {
     CHECK(says(issues(p), {"edge 1 crosses hole 0"}));
     p.panels[0].holes = {polygon({{0.7, 0.1}, {0.8, 0.1}, {0.7, 0.2}})};
     CHECK(says(issues(p), {"hole 0 lies outside"}));
-    p.panels[0].holes = {polygon({{0.1, 0.1}, {0.3, 0.3}, {0.1, 0.3}}), polygon({{0.2, 0.1}, {0.2, 0.4}, {0.3, 0.4}})};
+    p.panels[0].holes = {polygon({{0.1, 0.1}, {0.3, 0.3}, {0.1, 0.3}}),
+                         polygon({{0.2, 0.1}, {0.2, 0.4}, {0.3, 0.4}})};
     CHECK(says(issues(p), {"hole 0", "crosses hole 1"}));
     p.panels[0].holes = {{}};
     CHECK(says(issues(p), {"hole 0", "no edges"}));

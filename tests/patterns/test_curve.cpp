@@ -10,7 +10,9 @@ using namespace toile;
 
 namespace {
 
-double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross(const Vec2& a, const Vec2& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
 
 std::vector<Edge> samples() {
     const Vec2 a(0.1, -0.2), b(0.5, 0.1);

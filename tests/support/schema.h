@@ -21,7 +21,8 @@ public:
         std::ifstream in(std::string(TOILE_SOURCE_DIR) + "/docs/" + file);
         if (!in) throw std::runtime_error("no schema " + file);
         const nlohmann::json text = nlohmann::json::parse(in);
-        valijson::SchemaParser(valijson::SchemaParser::kDraft7).populateSchema(valijson::adapters::NlohmannJsonAdapter(text), schema_);
+        valijson::SchemaParser(valijson::SchemaParser::kDraft7)
+            .populateSchema(valijson::adapters::NlohmannJsonAdapter(text), schema_);
     }
 
     /// What is wrong with the document; empty when it is valid.

@@ -14,7 +14,7 @@ namespace {
 // The friction that is modelled stays a little below the limit, so that normal forces that still change by a few
 // per cent leave it within the limit.
 constexpr double friction_margin = 0.95;
-constexpr double limit_margin = 0.05; // a widened strain limit leaves this share of room
+constexpr double limit_margin = 0.02; // a widened strain limit leaves this share of room
 constexpr int renew_every = 8;        // arrivals after which what is lagged is renewed in any case
 
 double rest_area(const Mat2& edges) { return 0.5 * std::abs(edges.determinant()); }
@@ -114,10 +114,10 @@ void ClothProblem::arrive(const Points& x) {
     // What is lagged is renewed when the solve with the old values has got somewhere.
     const bool renew = arrivals_ % renew_every == 0 || residual_ < 0.1 * renewed_at_;
     ++arrivals_;
+    if (widened_ > 0 && arrivals_ % 2 == 0) limit_strain(x);
     if (!renew) return;
     renewed_at_ = residual_;
     if (friction.coefficient > 0) renew_friction();
-    if (widened_ > 0) limit_strain(x);
 }
 
 double ClothProblem::value(const Points& x) {

@@ -25,6 +25,8 @@ constexpr double weld_gap = 2e-4;        // m, below which a seam is closed for 
 constexpr double contact_share = 0.06;   // of the edge length: contact distance of levels that are not the last
 constexpr double barrier_stiffness = 1e6; // Pa/m for a cloth of 0.15 kg/m2 at a distance of half a millimetre
 constexpr double floor_share = 0.1;      // of the contact distance that is never entered
+constexpr double grow_distance = 2e-3;   // m, contact distance while the body grows back
+constexpr int tighten_rounds = 10;
 constexpr double slid = 0.10;            // m below its place at which a held edge counts as slid off
 constexpr double coarse_residual = 1;    // to which levels that are not the last are settled
 
@@ -81,6 +83,7 @@ struct Run {
 
     Garment garment;           ///< of the level at work, closed
     Points x;                  ///< its nodes
+    bool grown = true;         ///< the body has its full size
     std::map<std::string, double> carried_at; ///< mean height of each carrying label where the file puts it
 
     double seconds() const { return std::chrono::duration<double>(Clock::now() - started).count(); }
@@ -281,6 +284,12 @@ void refine(Run& run) {
 /// Draws the body in until the cloth is clear of it, and lets it grow back under contact. Fine triangles cut the
 /// creases and curves of the coarse ones they come from, by a millimetre or so.
 void clear_of_body(Run& run, ClothProblem& problem, Cholesky& factor) {
+    const ContactOptions final = problem.contact().options();
+    ContactOptions wide = final; // a body that grows pushes cloth along, the farther per step the wider
+    wide.body.distance = std::max(final.body.distance, grow_distance);
+    wide.body.floor = floor_share * final.body.distance;
+    wide.body.stiffness *= final.body.distance / wide.body.distance;
+    problem.contact().set_options(wide);
     const std::vector<Triangle> cloth = node_triangles(run.garment);
     const Points normals = vertex_normals(run.body);
     TriMesh drawn = run.body;
@@ -293,14 +302,14 @@ void clear_of_body(Run& run, ClothProblem& problem, Cholesky& factor) {
             count_intersections(cloth, run.x, drawn).cloth_avatar == 0)
             break;
     }
-    if (depth == 0) return;
+    run.grown = depth == 0;
     run.begin("grow", 0);
     SettleOptions o;
     o.tolerance = 1;
     o.max_iterations = 3;
     o.exact_below = 0;
     const Eigen::VectorXd still = Eigen::VectorXd::Zero(3 * run.garment.node_count);
-    for (int k = 0; k < 200 && !run.stopped; ++k) {
+    for (int k = 0; k < 200 && !run.stopped && !run.grown; ++k) {
         Points motion(drawn.points.size());
         for (std::size_t v = 0; v < motion.size(); ++v) motion[v] = run.body.points[v] - problem.contact().body()[v];
         problem.contact().prepare(run.x, still, &motion);
@@ -308,9 +317,10 @@ void clear_of_body(Run& run, ClothProblem& problem, Cholesky& factor) {
         Points next = problem.contact().body();
         for (std::size_t v = 0; v < motion.size(); ++v) next[v] = t == 1 ? run.body.points[v] : Vec3(next[v] + t * motion[v]);
         problem.contact().set_body(next);
-        if (t == 1) break;
+        run.grown = t == 1;
         run.settle_some(problem, run.x, factor, o);
     }
+    problem.contact().set_options(final);
 }
 
 void note_where(Run& run, const ClothProblem& problem, const SettleResult& r) {
@@ -342,8 +352,14 @@ void settle_level(Run& run) {
         int iterations;
         bool hooked;
     };
-    const std::vector<Pass> passes = first ? std::vector<Pass>{{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, 150, false}}
-                                           : std::vector<Pass>{{1.0 / 4, 8, false}, {1, 600, false}};
+    // A carrying edge finds the height at which it fits before friction may hold it, since a tight band on a slight
+    // cone is held by friction at any height.
+    std::vector<Pass> passes{{1.0 / 4, 8, false}, {1, 600, false}};
+    if (first) passes = {{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, 150, false}};
+    if (!problem.hooks.empty()) {
+        passes.insert(passes.end() - 1, {1, 100, true});
+        problem.friction.coefficient = 0;
+    }
     SettleResult r;
     for (const Pass& pass : passes) {
         if (run.stopped) break;
@@ -357,14 +373,22 @@ void settle_level(Run& run) {
         o.tolerance = run.last_level() && last_pass ? run.options.tolerance : coarse_residual;
         o.max_iterations = pass.iterations;
         o.exact_below = last_pass ? 20 : 0;
-        if (last_pass) problem.limit_strain(run.x);
+        if (pass.softness == 1) problem.limit_strain(run.x);
         r = run.settle_some(problem, run.x, factor, o);
+        // Limits that had to be widened are drawn in from where the cloth has come to rest, again and again.
+        for (int k = 0; last_pass && problem.widened() > 0 && k < tighten_rounds && !run.stopped; ++k) {
+            problem.limit_strain(run.x);
+            o.max_iterations = 40;
+            r = run.settle_some(problem, run.x, factor, o);
+        }
     }
     run.result.residual = r.residual;
     run.result.barrier = {contact.body.distance, contact.body.stiffness};
     if (run.last_level()) {
         if (run.stopped || run.iterations_left <= 0)
             run.result.status = DrapeStatus::limit;
+        else if (!run.grown)
+            run.result.status = DrapeStatus::too_small;
         else if (r.end == SettleEnd::settled && problem.widened() == 0)
             run.result.status = DrapeStatus::converged;
         else

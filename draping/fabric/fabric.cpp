@@ -29,8 +29,7 @@ Fabric poplin() {
     f.limit_weft = 0.03;
     f.limit_shear = 25 * degree;
     f.source = "stretch: plain weave of 0.128 kg/m2, Wang 2011; bending: medians at 0.10-0.14 kg/m2, Feng 2022; "
-               "Poisson ratio: cotton, Penava 2014; shear: range of shirtings, "
-               "and limits: low end of their elongation at 490 N/m (warp 2-4 %, weft 3-11 %), Kawabata 1980";
+               "Poisson ratio: cotton, Penava 2014; shear: range of shirtings, Kawabata 1980; limits: chosen";
     return f;
 }
 

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/algebra/cholesky.h"
+
+
+#include <catch2/catch.hpp>
+
+#include <Eigen/Dense>
+
+using namespace toile;
+
+namespace {
+
+struct Filled {
+    BlockMatrix sparse;
+    Eigen::MatrixXd dense;
+};
+
+// A chain of points, each coupled to the next and to the one after, with random blocks made diagonally dominant.
+Filled filled(int points) {
+    std::vector<std::pair<int, int>> pairs;
+    for (int i = 0; i < points; ++i)
+        for (int k = 1; k <= 2 && i + k < points; ++k) pairs.emplace_back(i, i + k);
+    Filled f{BlockMatrix(points, pairs), Eigen::MatrixXd::Zero(3 * points, 3 * points)};
+    unsigned seed = 7;
+    const auto random = [&seed] {
+        seed = seed * 1664525u + 1013904223u;
+        return double(seed >> 8) / double(1u << 24) - 0.5;
+    };
+    const auto block = [&] {
+        Mat3 m;
+        for (int k = 0; k < 9; ++k) m(k / 3, k % 3) = random();
+        return m;
+    };
+    for (const auto& [j, i] : pairs) {
+        const Mat3 m = block();
+        f.sparse.add_off_diagonal(j, f.sparse.find(i, j), m);
+        f.dense.block<3, 3>(3 * i, 3 * j) += m;
+        f.dense.block<3, 3>(3 * j, 3 * i) += m.transpose();
+    }
+    for (int i = 0; i < points; ++i) {
+        const Mat3 m = block();
+        const Mat3 s = m * m.transpose() + 8 * Mat3::Identity();
+        f.sparse.add_diagonal(i, s);
+        f.dense.block<3, 3>(3 * i, 3 * i) += s;
+    }
+    return f;
+}
+
+} // namespace
+
+TEST_CASE("a block matrix multiplies, shifts, pins and factors as its dense twin") {
+    const int points = 23;
+    Filled f = filled(points);
+    const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(3 * points, -1, 2);
+    Eigen::VectorXd y;
+    f.sparse.multiply(x, y);
+    CHECK((y - f.dense * x).norm() < 1e-12 * y.norm());
+
+    const Eigen::VectorXd shift = Eigen::VectorXd::LinSpaced(3 * points, 0.5, 1);
+    f.sparse.add_to_diagonal(shift);
+    f.dense.diagonal() += shift;
+    std::vector<char> pinned(points, 0);
+    pinned[3] = pinned[22] = 1;
+    f.sparse.pin(pinned);
+    for (int i : {3, 22}) {
+        f.dense.middleRows<3>(3 * i).setZero();
+        f.dense.middleCols<3>(3 * i).setZero();
+        f.dense.block<3, 3>(3 * i, 3 * i).setIdentity();
+    }
+    f.sparse.multiply(x, y);
+    CHECK((y - f.dense * x).norm() < 1e-12 * y.norm());
+
+    Cholesky cholesky;
+    for (const bool keep_order : {false, true}) {
+        cholesky.analyse(f.sparse, keep_order);
+        REQUIRE(cholesky.factorise(f.sparse));
+        Eigen::VectorXd solved;
+        cholesky.solve(x, solved);
+        CHECK((f.dense * solved - x).norm() < 1e-11 * x.norm());
+    }
+    CHECK(f.sparse.find(10, 5) == -1);
+}
+
+TEST_CASE("a matrix that is not positive definite is told by its factorisation") {
+    Filled f = filled(5);
+    f.sparse.add_to_diagonal(Eigen::VectorXd::Constant(15, -40));
+    Cholesky cholesky;
+    cholesky.analyse(f.sparse);
+    CHECK_FALSE(cholesky.factorise(f.sparse));
+}

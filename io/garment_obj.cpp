@@ -38,23 +38,6 @@ void append_header(std::string& out, const WriteOptions& options) {
     out += options.z_up ? "\n# up z\n" : "\n# up y\n";
 }
 
-/// Names as OBJ can hold them: without white space, all different, none the avatar's.
-std::vector<std::string> group_names(const Garment& g) {
-    std::set<std::string> taken{"avatar"};
-    std::vector<std::string> names;
-    for (std::string name : g.panel_names) {
-        std::replace_if(
-            name.begin(), name.end(), [](unsigned char c) { return std::isspace(c) || std::iscntrl(c); },
-            '_');
-        if (name.empty()) name = "panel";
-        const std::string stem = name;
-        for (int k = 2; !taken.insert(name).second; ++k)
-            name = stem + "_" + std::to_string(k);
-        names.push_back(name);
-    }
-    return names;
-}
-
 void append_texture(std::string& out, const Garment& g, const std::vector<std::string>& names) {
     const UvLayout layout = lay_out_panels(g);
     append(out += "# uv_metres ", layout.scale);
@@ -263,6 +246,22 @@ struct Reader {
 };
 
 } // namespace
+
+std::vector<std::string> group_names(const Garment& g) {
+    std::set<std::string> taken{"avatar"};
+    std::vector<std::string> names;
+    for (std::string name : g.panel_names) {
+        std::replace_if(
+            name.begin(), name.end(), [](unsigned char c) { return std::isspace(c) || std::iscntrl(c); },
+            '_');
+        if (name.empty()) name = "panel";
+        const std::string stem = name;
+        for (int k = 2; !taken.insert(name).second; ++k)
+            name = stem + "_" + std::to_string(k);
+        names.push_back(name);
+    }
+    return names;
+}
 
 std::string garment_obj(const Garment& g, const Points& x, const WriteOptions& options,
                         const std::string& mtl_name) {

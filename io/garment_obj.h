@@ -16,6 +16,9 @@ std::string garment_obj(const Garment& garment, const Points& x, const WriteOpti
 std::string garment_mtl(const Garment& garment, const WriteOptions& options);
 std::string mesh_obj(const TriMesh& mesh, const WriteOptions& options);
 
+/// The panels' names as OBJ can hold them: without white space, all different, none the avatar's.
+std::vector<std::string> group_names(const Garment& garment);
+
 /// Throws InputError naming the line.
 GarmentParts parse_garment_obj(std::string_view text, const std::string& name);
 

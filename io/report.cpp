@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/report.h"
+
+#include "io/hash.h"
+#include "io/write_garment.h"
+
+#include <nlohmann/json.hpp>
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace toile {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no infinity.
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json spread(const Spread& s) {
+    return {{"min", s.min}, {"max", s.max}, {"p99", s.p99}, {"mean", s.mean}};
+}
+
+Json limited(const Spread& s, double limit) {
+    Json out = spread(s);
+    out["limit"] = limit;
+    return out;
+}
+
+Json strain(const StrainMeasure& m) {
+    return {{"warp", limited(m.warp, m.limit_warp)},
+            {"weft", limited(m.weft, m.limit_weft)},
+            {"principal", spread(m.principal)},
+            {"shear", limited(m.shear, m.limit_shear)},
+            {"compressed_area", m.compressed_area}};
+}
+
+Json ease_at(const DrapeResult& r, const TriMesh& body, double height) {
+    const EaseMeasure e = measure_ease(r.garment, r.state.positions, body, height);
+    if (!e.found) return nullptr;
+    return {{"height", height}, {"garment", e.garment}, {"body", e.body}, {"ease", e.ease}};
+}
+
+Json ease(const DrapeResult& r, const TriMesh& body, const std::optional<BodyMeasures>& at) {
+    if (!at) return {{"bust", nullptr}, {"waist", nullptr}, {"hip", nullptr}};
+    return {{"bust", ease_at(r, body, at->bust_y)},
+            {"waist", ease_at(r, body, at->waist_y)},
+            {"hip", ease_at(r, body, at->hip_y)}};
+}
+
+Json levels(const DrapeResult& r) {
+    Json out = Json::array();
+    for (const LevelReport& l : r.levels)
+        out.push_back({{"edge_length", l.edge_length},
+                       {"vertices", l.vertices},
+                       {"iterations", l.iterations},
+                       {"factorisations", l.factorisations},
+                       {"seconds", l.seconds}});
+    return out;
+}
+
+Json seconds(const DrapeResult& r, const ReportContext& context) {
+    Json out{{"total", context.total_seconds}};
+    for (const auto* list : {&context.seconds, &r.seconds})
+        for (const StageSeconds& s : *list)
+            out[s.stage] = out.value(s.stage, 0.0) + s.seconds;
+    return out;
+}
+
+std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+}
+
+struct Contact {
+    IntersectionCount count;
+    double clearance = 0;
+};
+
+Contact measure_contact(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body) {
+    return {count_intersections(cloth, x, body), clearance_min(cloth, x, body)};
+}
+
+Contact worst_contact(const DrapeResult& r, const TriMesh& body, bool written_as_float) {
+    const std::vector<Triangle> cloth = node_triangles(r.garment);
+    Contact worst = measure_contact(cloth, r.state.positions, body);
+    if (!written_as_float) return worst;
+    const Contact rounded = measure_contact(cloth, rounded_to_float(r.state.positions), body);
+    worst.count.cloth_avatar = std::max(worst.count.cloth_avatar, rounded.count.cloth_avatar);
+    worst.count.cloth_cloth = std::max(worst.count.cloth_cloth, rounded.count.cloth_cloth);
+    worst.clearance = std::min(worst.clearance, rounded.clearance);
+    return worst;
+}
+
+} // namespace
+
+nlohmann::ordered_json make_report(const DrapeResult& r, const TriMesh& body, const PanelFabrics& fabrics,
+                                   const ReportContext& context) {
+    const Points& x = r.state.positions;
+    const Contact contact = worst_contact(r, body, context.written_as_float);
+    const DevelopabilityMeasure bent = measure_developability(r.garment, x);
+    return {
+        {"status", to_string(r.status)},
+        {"where", r.where},
+        {"residual", number(r.residual)},
+        {"tolerance", r.tolerance},
+        {"strain", strain(measure_strain(r.garment, x, fabrics))},
+        {"seam_gap_max", seam_gap_max(r.garment, x)},
+        {"intersections",
+         {{"cloth_avatar", contact.count.cloth_avatar}, {"cloth_cloth", contact.count.cloth_cloth}}},
+        {"clearance_min", number(contact.clearance)},
+        {"developability",
+         {{"angle_defect_mean", bent.angle_defect_mean}, {"angle_defect_max", bent.angle_defect_max}}},
+        {"ease", ease(r, body, context.body_measures)},
+        {"vertices", r.garment.uv.size()},
+        {"nodes", r.garment.node_count},
+        {"triangles", r.garment.triangles.size()},
+        {"pieces", count_pieces(node_triangles(r.garment), r.garment.node_count)},
+        {"levels", levels(r)},
+        {"seconds", seconds(r, context)},
+        {"peak_memory_bytes", peak_memory_bytes()},
+        {"threads", context.threads},
+        {"blas", context.blas},
+        {"version", TOILE_VERSION},
+        {"fabric", context.fabric},
+        {"friction", r.friction},
+        {"barrier", {{"distance", r.barrier.distance}, {"stiffness", r.barrier.stiffness}}},
+        {"input_hash", context.input_hash},
+        {"result_hash", result_hash(r.garment, x)},
+        {"decisions", joined(context.decisions, r.decisions)},
+        {"warnings", joined(context.warnings, r.warnings)},
+    };
+}
+
+std::string report_json(const DrapeResult& result, const TriMesh& body, const PanelFabrics& fabrics,
+                        const ReportContext& context) {
+    const Json report = make_report(result, body, fabrics, context);
+    return report.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
+std::uint64_t peak_memory_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return std::uint64_t(usage.ru_maxrss) * 1024;
+}
+
+} // namespace toile

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "src/command_line.h"
+
+#include "geometry/parallel.h"
+#include "src/length.h"
+#include "src/options.h"
+#include "src/pipeline.h"
+#include "src/progress.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+#include <ostream>
+
+namespace toile {
+namespace {
+
+struct DrapeArguments {
+    DrapeJob job;
+    int threads = 0;
+    bool quiet = false, json = false;
+};
+
+void refuse_useless(const DrapeArguments& a) {
+    if (a.job.garments.empty() && a.job.report.empty() && a.job.preview.empty() && !a.json)
+        throw CommandLineError("there is nothing to write: name a file with -o, --report or --preview");
+    if (a.job.repair_avatar && a.job.avatar.empty())
+        throw CommandLineError("--repair-avatar needs --avatar; the built-in form is closed");
+    for (const std::string& path : a.job.garments) {
+        try {
+            garment_format(path);
+        } catch (const std::exception& error) {
+            throw CommandLineError(error.what());
+        }
+    }
+}
+
+std::string joined(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names)
+        text += (text.empty() ? "" : ", ") + name;
+    return text;
+}
+
+std::string print(const char* format, double value) {
+    char text[48];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+std::string percent(double share) {
+    return print("%.2f %%", 100 * share);
+}
+
+/// The report in five lines.
+void summarise(std::ostream& out, const DrapeOutcome& outcome) {
+    const auto r = nlohmann::json::parse(outcome.report);
+    const auto& strain = r["strain"];
+    out << r["status"].get<std::string>() << ": residual " << r["residual"] << " of " << r["tolerance"]
+        << ", " << r["nodes"] << " nodes, " << r["triangles"] << " triangles, "
+        << print("%.1f s\n", r["seconds"]["total"]);
+    out << "intersections: " << r["intersections"]["cloth_avatar"] << " with the body, "
+        << r["intersections"]["cloth_cloth"] << " of the cloth with itself\n";
+    out << "seams: "
+        << (r["seam_gap_max"] == 0.0 ? "closed" : "open by up to " + show_length(r["seam_gap_max"])) << '\n';
+    out << "stretch: warp to " << percent(strain["warp"]["max"]) << " of " << percent(strain["warp"]["limit"])
+        << ", weft to " << percent(strain["weft"]["max"]) << " of " << percent(strain["weft"]["limit"])
+        << "; compressed " << percent(strain["compressed_area"]) << " of the area\n";
+    if (!outcome.written.empty()) out << "written: " << joined(outcome.written) << '\n';
+}
+
+int drape_command(const DrapeArguments& arguments, const Console& console) {
+    refuse_useless(arguments);
+    set_threads(arguments.threads);
+    DrapeJob job = arguments.job;
+    const Interrupt interrupt;
+    ProgressLine line(console.err, console.terminal && !arguments.quiet);
+    job.drape.progress = [&](const DrapeProgress& progress) {
+        line.show(progress);
+        return !interrupt.asked();
+    };
+    const DrapeOutcome outcome = run_job(job);
+    line.clear();
+    if (arguments.json) console.out << outcome.report << std::flush;
+    if (!arguments.json && !arguments.quiet) {
+        const auto report = nlohmann::json::parse(outcome.report);
+        for (const auto& warning : report["warnings"])
+            console.err << "warning: " << warning.get<std::string>() << '\n';
+        summarise(console.out, outcome);
+        console.out << std::flush;
+    }
+    if (interrupt.asked())
+        console.err << "toile: stopped by a signal; the state reached was written" << std::endl;
+    if (outcome.result.status == DrapeStatus::converged) return exit_made;
+    if (!interrupt.asked())
+        console.err << "toile: " << to_string(outcome.result.status)
+                    << (outcome.result.where.empty() ? "" : ": " + outcome.result.where)
+                    << "; the best state was written" << std::endl;
+    return exit_not_converged;
+}
+
+} // namespace
+
+void add_drape(CLI::App& app, Command& chosen) {
+    CLI::App& command = *app.add_subcommand("drape", "Sew a pattern and drape it on a body");
+    const auto a = std::make_shared<DrapeArguments>();
+    DrapeJob& job = a->job;
+    command.add_option("pattern", job.pattern, "Pattern file")->required()->type_name("FILE");
+    command
+        .add_option("--avatar", job.avatar,
+                    "Body: OBJ, PLY, STL, GLB or COLLADA (default: the built-in form)")
+        ->type_name("FILE");
+    command.add_flag("--repair-avatar", job.repair_avatar, "Close the holes of a leaky body");
+    add_form_measures(command, job.form);
+    add_fabric(command, job.fabric, "Fabric of panels that name none");
+    add_length(command, "edge-length", job.edge_length, 0.001, 0.2, "Mean edge of the mesh");
+    command.add_option("-o,--output", job.garments, "Garment file to write, .obj or .glb; may be repeated")
+        ->expected(1)
+        ->take_all()
+        ->type_name("FILE");
+    command.add_option("--report", job.report, "Report to write, JSON by docs/report.schema.json")
+        ->type_name("FILE");
+    command.add_option("--preview", job.preview, "Picture to write, PNG")->type_name("FILE");
+    command.add_option("--from", job.from, "Garment file to start from, after an edit of the pattern")
+        ->type_name("FILE");
+    command.add_option("--tolerance", job.drape.tolerance, "Residual to reach (default 0.001)")
+        ->check(CLI::Range(1e-9, 1.0).description(""))
+        ->type_name("NUMBER");
+    add_length(command, "clearance", job.drape.clearance, 5e-5, 0.01,
+               "Distance from the body below which contact acts");
+    command.add_flag("--with-avatar", job.with_avatar, "Write the body into the garment files too");
+    add_unit_and_up(command, job.write);
+    command
+        .add_option("--threads", a->threads,
+                    "Threads to use (default 0: all); the result does not depend on it")
+        ->check(CLI::Range(0, 1024).description(""))
+        ->type_name("COUNT");
+    command.add_flag("--quiet", a->quiet, "Print errors only");
+    command.add_flag("--json", a->json, "Print the report instead of a summary");
+    command.callback(
+        [a, &chosen] { chosen = [a](const Console& console) { return drape_command(*a, console); }; });
+}
+
+} // namespace toile

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "src/command_line.h"
+
+#include "io/flat_svg.h"
+#include "io/read_pattern.h"
+
+#include <CLI/CLI.hpp>
+
+#include <memory>
+#include <ostream>
+
+namespace toile {
+namespace {
+
+struct FlatArguments {
+    std::string pattern, output;
+};
+
+} // namespace
+
+void add_flat(CLI::App& app, Command& chosen) {
+    CLI::App& command =
+        *app.add_subcommand("flat", "Draw the pattern: panels, grain, seams numbered in pairs");
+    const auto a = std::make_shared<FlatArguments>();
+    command.add_option("pattern", a->pattern, "Pattern file")->required()->type_name("FILE");
+    command.add_option("-o,--output", a->output, "SVG file to write")
+        ->required()
+        ->type_name("FILE")
+        ->check([](const std::string& path) {
+            return path.ends_with(".svg") ? std::string() : path + " does not end in .svg";
+        });
+    command.callback([a, &chosen] {
+        chosen = [a](const Console&) -> int {
+            write_flat_svg(a->output, read_pattern(a->pattern));
+            return exit_made;
+        };
+    });
+}
+
+} // namespace toile

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "src/options.h"
+
+#include "draping/fabric/fabric.h"
+#include "src/length.h"
+
+#include <CLI/CLI.hpp>
+
+#include <map>
+
+namespace toile {
+
+void add_form_measures(CLI::App& command, FormMeasures& form) {
+    const FormMeasures standard;
+    form = standard;
+    add_length(command, "height", form.height, 1.2, 2.1, "Height of the built-in form");
+    add_length(command, "bust", form.bust, 0.6, 1.5, "Its bust girth");
+    add_length(command, "waist", form.waist, 0.5, 1.5, "Its waist girth");
+    add_length(command, "hip", form.hip, 0.6, 1.6, "Its hip girth");
+}
+
+void add_unit_and_up(CLI::App& command, WriteOptions& write) {
+    static const std::map<std::string, double> units{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}};
+    command
+        .add_option_function<std::string>(
+            "--unit", [&write](const std::string& unit) { write.metres_per_unit = units.at(unit); },
+            "Unit of written OBJ files (default m; GLB is metres by its standard)")
+        ->check(CLI::IsMember({"m", "cm", "mm"}).description(""))
+        ->type_name("m|cm|mm");
+    command
+        .add_option_function<std::string>(
+            "--up", [&write](const std::string& up) { write.z_up = up == "z"; },
+            "Up axis of written OBJ files (default y; GLB is y up by its standard)")
+        ->check(CLI::IsMember({"y", "z"}).description(""))
+        ->type_name("y|z");
+}
+
+void add_fabric(CLI::App& command, std::string& fabric, const std::string& help) {
+    std::string names;
+    for (const Fabric& preset : fabric_presets())
+        names += (names.empty() ? "" : " ") + preset.name;
+    command.add_option("--fabric", fabric, help + ": " + names)
+        ->check([](const std::string& name) {
+            try {
+                fabric_preset(name);
+                return std::string();
+            } catch (const std::invalid_argument& error) {
+                return std::string(error.what());
+            }
+        })
+        ->type_name("NAME");
+}
+
+} // namespace toile

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// From files to files: read, check, triangulate, drape, write. Start reading toile here.
+
+#include "draping/drape.h"
+#include "io/write_garment.h"
+#include "sewing/form.h"
+
+#include <string>
+#include <vector>
+
+namespace toile {
+
+struct DrapeJob {
+    std::string pattern; ///< file
+    std::string avatar;  ///< file; empty: the built-in form of these measures
+    FormMeasures form;
+    bool repair_avatar = false;
+    std::string fabric;        ///< preset; empty: what the pattern says, else poplin
+    double edge_length = 0.01; ///< m, mean edge of the finest mesh
+    std::string from;          ///< garment file to start from; empty: the pattern's own placement
+    DrapeOptions drape;
+
+    std::vector<std::string> garments; ///< files to write: .obj, .glb
+    std::string preview, report;       ///< files; empty: not written
+    WriteOptions write;                ///< unit and up axis; its avatar is set by with_avatar
+    bool with_avatar = false;
+};
+
+struct DrapeOutcome {
+    DrapeResult result;
+    TriMesh body;
+    std::string report;               ///< JSON text
+    std::vector<std::string> written; ///< files
+};
+
+/// Does the job. Throws InputError (a sentence) when a file is refused or a target cannot be written, before
+/// anything is; a drape that does not converge is written all the same, and `result.status` says so.
+DrapeOutcome run_job(const DrapeJob& job);
+
+/// Nested levels for a finest edge length: twice as coarse each, the coarsest of 40 to 80 mm.
+int levels_for(double edge_length);
+
+/// The fabric of every panel: its own, else `fabric`, else the pattern's, else poplin. Throws InputError
+/// naming the panel whose fabric is not known.
+PanelFabrics panel_fabrics(const Pattern& pattern, const std::string& fabric);
+
+/// The built-in form. Throws CommandLineError when a measure is out of range.
+TriMesh form_of(const FormMeasures& measures);
+
+/// The body of a job in metres, y up, and what was noted when it was read.
+struct Body {
+    TriMesh mesh;
+    std::vector<std::string> notes;
+};
+Body read_body(const std::string& avatar, const FormMeasures& form, bool repair);
+
+} // namespace toile

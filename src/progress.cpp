@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "src/progress.h"
+
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <ostream>
+
+namespace toile {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+
+void remember(int) {
+    interrupted = 1;
+}
+
+std::string print(const char* format, double value) {
+    char text[48];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+std::string time_left(double seconds) {
+    if (!std::isfinite(seconds)) return "";
+    if (seconds < 60) return print("  %.0f s left", std::ceil(seconds));
+    return print("  %.0f min left", std::ceil(seconds / 60));
+}
+
+} // namespace
+
+std::string progress_text(const DrapeProgress& p) {
+    std::string text = p.stage;
+    if (p.levels > 1) text += "  level " + std::to_string(p.level + 1) + " of " + std::to_string(p.levels);
+    if (std::isfinite(p.residual)) text += print("  residual %.1e", p.residual);
+    text += print("  %.0f %%", std::floor(100 * p.done));
+    return text + time_left(p.seconds_left);
+}
+
+void ProgressLine::show(const DrapeProgress& progress) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!shown_ || (dirty_ && now - last_ < std::chrono::milliseconds(100))) return;
+    err_ << "\r\033[K" << progress_text(progress) << std::flush;
+    dirty_ = true;
+    last_ = now;
+}
+
+void ProgressLine::clear() {
+    if (dirty_) err_ << "\r\033[K" << std::flush;
+    dirty_ = false;
+}
+
+Interrupt::Interrupt() {
+    interrupted = 0;
+    struct sigaction action = {};
+    action.sa_handler = remember;
+    action.sa_flags = int(SA_RESETHAND);
+    sigaction(SIGINT, &action, nullptr);
+    sigaction(SIGTERM, &action, nullptr);
+}
+
+Interrupt::~Interrupt() {
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+}
+
+bool Interrupt::asked() const {
+    return interrupted != 0;
+}
+
+} // namespace toile

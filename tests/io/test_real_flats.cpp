@@ -21,8 +21,7 @@ std::vector<std::string> patterns() {
     for (const char* folder : {"garmentcode", "garmentcode_2021"})
         if (const auto path = test_data(folder))
             for (const auto& file : std::filesystem::directory_iterator(*path))
-                if (file.path().string().ends_with("_specification.json"))
-                    out.push_back(file.path().string());
+                if (file.path().extension() == ".json") out.push_back(file.path().string());
     std::sort(out.begin(), out.end());
     return out;
 }

@@ -70,7 +70,7 @@ struct Run {
     const TriMesh& body;
     const PanelFabrics& fabrics;
     const DrapeOptions& options;
-    DrapeResult result;
+    DrapeResult result = {};
 
     Clock::time_point started = Clock::now();
     double density = 0;
@@ -78,13 +78,13 @@ struct Run {
     int iterations_left = 0;
     double share_begin = 0, share_end = 0; ///< of the whole, of the stage at work
     double done = 0;
-    std::string stage;
+    std::string stage = {};
     int level = 0;
 
-    Garment garment;           ///< of the level at work, closed
-    Points x;                  ///< its nodes
+    Garment garment = {};      ///< of the level at work, closed
+    Points x = {};             ///< its nodes
     bool grown = true;         ///< the body has its full size
-    std::map<std::string, double> carried_at; ///< mean height of each carrying label where the file puts it
+    std::map<std::string, double> carried_at = {}; ///< mean height of each carrying label where the file puts it
 
     double seconds() const { return std::chrono::duration<double>(Clock::now() - started).count(); }
     int levels() const { return int(flat.levels.size()); }
@@ -194,8 +194,8 @@ Points merge(const Garment& closed, const std::vector<int>& map, const Points& x
     return merged;
 }
 
-/// Pulls the seams of the coarsest level shut around the body. True when every seam has closed.
-bool close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Points& x) {
+/// Pulls the seams of the coarsest level shut around the body; returns the widest gap left, m.
+double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Points& x) {
     Cholesky factor;
     SettleOptions o;
     o.tolerance = 1e-2;
@@ -207,17 +207,17 @@ bool close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Poin
         o.time_step = std::min(0.02 * std::pow(2.0, round / 3), 1.0);
         run.settle_some(problem, x, factor, o);
         const double gap = largest_gap(open, x);
-        if (gap < weld_gap) return true;
+        if (gap < weld_gap) return gap;
         if (gap < 0.01)
             for (auto& s : problem.stitches) s.stiffness = std::min(3 * s.stiffness, 2e4 * s.cap);
         if (gap > 0.95 * last) {
-            if (cap_scale > 30) return false;
+            if (cap_scale > 30) return gap;
             cap_scale *= 1.5;
             for (auto& s : problem.stitches) s.cap *= 1.5;
         }
         last = gap;
     }
-    return false;
+    return last;
 }
 
 /// Places and sews the coarsest level. The cloth may pass through itself on the way when it cannot close
@@ -233,8 +233,7 @@ void sew_coarsest(Run& run) {
 
     std::vector<int> map;
     run.garment = close_seams(open, &map);
-    bool closed = false;
-    int crossings = 0;
+    double gap = 0;
     for (const bool self : {true, false}) {
         ContactOptions contact = run.contact_options();
         contact.self = self;
@@ -244,20 +243,21 @@ void sew_coarsest(Run& run) {
             problem.stitches.push_back({s.a, s.b, s.r, seam_stiffness * s.length, seam_pull * s.length});
         problem.hooks = hooks(open, run.carried_at, 9.81 * total(problem.node_mass()));
         Points x = placed;
-        closed = close_open_seams(run, open, problem, x);
+        gap = close_open_seams(run, open, problem, x);
         const Points merged = merge(run.garment, map, x);
-        crossings = count_intersections(node_triangles(run.garment), merged, run.body).cloth_cloth;
+        const int crossings = count_intersections(node_triangles(run.garment), merged, run.body).cloth_cloth;
         run.x = merged;
-        if (run.stopped || (closed && crossings == 0)) {
-            if (!self)
+        if (run.stopped || (gap < weld_gap && crossings == 0)) {
+            if (!self && !run.stopped)
                 run.result.decisions.push_back("cloth passed through itself while seams closed: with contact "
                                                "between panels a seam could not close; the sewn garment does "
                                                "not cross itself (0 pairs)");
             break;
         }
     }
-    if (!closed && !run.stopped)
-        run.result.where = text("seams did not close: %.1f mm stay open", 1e3 * largest_gap(open, placed));
+    if (gap >= weld_gap && !run.stopped)
+        run.result.warnings.push_back(
+            text("seams were %.1f mm open when they were joined: something kept them apart", 1e3 * gap));
     const double s = std::chrono::duration<double>(Clock::now() - start).count();
     run.result.levels.back().seconds += s;
     run.result.seconds.push_back({"sew", s});

@@ -393,14 +393,14 @@ private:
 
     void draw_elastic(const Elastic& e) {
         stroke(path(e.span), "#8020a0", 0.5 * text_, dashes({0.1, 0.5}) + " stroke-opacity=\"0.7\"");
-        const Middle m = middle_at(e.span, 0.5 * (e.span.t0 + e.span.t1), 0);
-        words(m.at + 2 * text_ * m.inward, 0.6 * text_, "elastic " + number(e.ratio), " fill=\"#8020a0\"");
+        const Middle m = middle_at(e.span, 0.75 * e.span.t0 + 0.25 * e.span.t1, 0);
+        words(m.at + 1.1 * text_ * m.inward, 0.6 * text_, "elastic " + number(e.ratio), " fill=\"#8020a0\"");
     }
 
     void draw_pin(const Pin& p) {
         stroke(path(p.span), "#101010", 0.3 * text_, dashes({0.01, 0.45}));
         const Middle m = middle_at(p.span, 0.5 * (p.span.t0 + p.span.t1), 0);
-        words(m.at + 2 * text_ * m.inward, 0.6 * text_, "pinned", " fill=\"#101010\"");
+        words(m.at + 1.1 * text_ * m.inward, 0.6 * text_, "pinned", " fill=\"#101010\"");
     }
 
     /// Name, what else is known of the panel, grain, edge numbers and labels.

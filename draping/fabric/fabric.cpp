@@ -46,10 +46,11 @@ Fabric denim() {
     f.bend_twist = 33 * micro;
     f.thickness = 0.6 * milli;
     f.friction = 0.30;
-    f.limit_warp = f.limit_weft = 0.01;
+    f.limit_warp = 0.015;
+    f.limit_weft = 0.025;
     f.limit_shear = 20 * degree;
-    f.source = "density, shear, bending: 11 oz denim, Wang 2011; stretch: denim without elastane, chosen between "
-               "that sample and the woven trousers";
+    f.source = "density, shear, bending: 11 oz denim, Wang 2011; stretch and limits: denim without elastane, "
+               "chosen between that sample and the woven trousers";
     return f;
 }
 
@@ -66,7 +67,8 @@ Fabric silk() {
     f.bend_twist = 1.3 * micro;
     f.thickness = 0.12 * milli;
     f.friction = 0.25;
-    f.limit_warp = f.limit_weft = 0.01;
+    f.limit_warp = 0.02;
+    f.limit_weft = 0.03;
     f.limit_shear = 35 * degree;
     f.source = "bending: medians at 0.05-0.08 kg/m2, Feng 2022; shear: range of silks, Kawabata 1980; stretch, "
                "friction and limits: chosen";
@@ -86,8 +88,8 @@ Fabric wool() {
     f.bend_twist = 7.0 * micro;
     f.thickness = 0.57 * milli;
     f.friction = 0.35;
-    f.limit_warp = 0.015;
-    f.limit_weft = 0.02;
+    f.limit_warp = 0.03;
+    f.limit_weft = 0.04;
     f.limit_shear = 32 * degree;
     f.source = "density, thickness, Poisson ratio: wool, Penava 2014; bending: medians at 0.20-0.24 kg/m2, Feng "
                "2022; shear: range of suitings, Kawabata 1980; stretch and limits: chosen";
@@ -107,7 +109,8 @@ Fabric linen() {
     f.bend_twist = 10 * micro;
     f.thickness = 0.4 * milli;
     f.friction = 0.30;
-    f.limit_warp = f.limit_weft = 0.01;
+    f.limit_warp = 0.015;
+    f.limit_weft = 0.02;
     f.limit_shear = 28 * degree;
     f.source = "bending: upper quartiles at 0.17-0.21 kg/m2, Feng 2022 (flax is a stiff fibre); stretch, shear, "
                "friction and limits: chosen";

@@ -60,6 +60,6 @@ TEST_CASE("presets are ordered as a tailor would order them", "[fabric]") {
     ascending(&Fabric::bend_warp, {"silk", "poplin", "wool", "linen", "denim", "leather"});
     ascending(&Fabric::thickness, {"silk", "poplin", "linen", "denim", "leather"});
     ascending(&Fabric::stretch_weft, {"rib", "jersey", "wool", "silk", "poplin", "linen", "leather"});
-    ascending(&Fabric::limit_weft, {"poplin", "wool", "leather", "jersey", "rib"});
+    ascending(&Fabric::limit_weft, {"linen", "poplin", "wool", "leather", "jersey", "rib"});
     ascending(&Fabric::limit_shear, {"leather", "denim", "poplin", "linen", "wool", "silk", "jersey"});
 }

@@ -22,14 +22,15 @@ const Strings draping_rooms = {"algebra", "fabric", "energy", "contact", "solve"
 
 /// Libraries that cost minutes of compiling or belong behind one door, by the start of their headers, and the
 /// files that may include them.
+// src/version.cpp asks every library for its version and includes no more than the header that has it.
 const std::map<std::string, Strings> doors = {
-    {"CGAL/", {"geometry/intersections.cpp", "patterns/triangulate_cgal.cpp"}},
-    {"cholmod.h", {"sewing/sparse_solve.cpp", "draping/algebra/cholesky.cpp"}},
+    {"CGAL/", {"geometry/intersections.cpp", "patterns/triangulate_cgal.cpp", "src/version.cpp"}},
+    {"cholmod.h", {"sewing/sparse_solve.cpp", "draping/algebra/cholesky.cpp", "src/version.cpp"}},
     {"suitesparse/", {}},
     {"nlopt", {}},
-    {"assimp/", {"io/read_avatar.cpp"}},
-    {"embree3/", {"io/preview.cpp"}},
-    {"tbb/", {"geometry/parallel.cpp"}},
+    {"assimp/", {"io/read_avatar.cpp", "src/version.cpp"}},
+    {"embree3/", {"io/preview.cpp", "src/version.cpp"}},
+    {"tbb/", {"geometry/parallel.cpp", "src/version.cpp"}},
     {"oneapi/tbb", {}},
 };
 

@@ -57,8 +57,9 @@ std::string percent(double share) {
 void summarise(std::ostream& out, const DrapeOutcome& outcome) {
     const auto r = nlohmann::json::parse(outcome.report);
     const auto& strain = r["strain"];
-    out << r["status"].get<std::string>() << ": residual " << r["residual"] << " of " << r["tolerance"]
-        << ", " << r["nodes"] << " nodes, " << r["triangles"] << " triangles, "
+    const std::string residual = r["residual"].is_null() ? "unknown" : print("%.1e", r["residual"]);
+    out << r["status"].get<std::string>() << ": residual " << residual << print(" of %.1e, ", r["tolerance"])
+        << r["nodes"] << " nodes, " << r["triangles"] << " triangles, "
         << print("%.1f s\n", r["seconds"]["total"]);
     out << "intersections: " << r["intersections"]["cloth_avatar"] << " with the body, "
         << r["intersections"]["cloth_cloth"] << " of the cloth with itself\n";
@@ -80,6 +81,7 @@ int drape_command(const DrapeArguments& arguments, const Console& console) {
         line.show(progress);
         return !interrupt.asked();
     };
+    job.interrupted = [&] { return interrupt.asked(); };
     const DrapeOutcome outcome = run_job(job);
     line.clear();
     if (arguments.json) console.out << outcome.report << std::flush;

@@ -219,6 +219,8 @@ DrapeOutcome run_job(const DrapeJob& job) {
     DrapeOptions options = job.drape;
     options.from = earlier_positions(job.from, pattern, flat, context.decisions);
     outcome.result = drape(pattern, flat, avatar, fabrics, options);
+    if (job.interrupted && job.interrupted())
+        outcome.result.where = "stopped by a signal before it had converged";
     outcome.body = std::move(body.mesh);
     watch.skip();
 

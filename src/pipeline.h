@@ -21,6 +21,7 @@ struct DrapeJob {
     double edge_length = 0.01; ///< m, mean edge of the finest mesh
     std::string from;          ///< garment file to start from; empty: the pattern's own placement
     DrapeOptions drape;
+    std::function<bool()> interrupted; ///< whether drape.progress stopped the work; for the report's `where`
 
     std::vector<std::string> garments; ///< files to write: .obj, .glb
     std::string preview, report;       ///< files; empty: not written

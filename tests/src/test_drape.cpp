@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a pattern file to draped files, by the command.
+#include "io/read_garment.h"
+#include "io/write_file.h"
+#include "src/pipeline.h"
+#include "tests/src/run.h"
+#include "tests/support/khronos.h"
+#include "tests/support/schema.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+using namespace toile;
+using namespace toile::test;
+using Catch::Contains;
+
+namespace {
+
+const std::string tee = TOILE_SOURCE_DIR "/examples/tee.json";
+
+nlohmann::json load_json(const std::string& path) {
+    return nlohmann::json::parse(read_file(path, 1 << 24));
+}
+
+nlohmann::json inspection(const std::string& garment, const std::string& body) {
+    return nlohmann::json::parse(
+        run_toile({"inspect", garment, "--avatar", body, "--fabric", "jersey", "--json"}).out);
+}
+
+double warp_max(const nlohmann::json& figures) {
+    return figures["strain"]["warp"]["max"];
+}
+
+/// What every file of a garment must be, by a look at the file alone.
+void require_sound(const nlohmann::json& i) {
+    CHECK(i["intersections"]["cloth_avatar"] == 0);
+    CHECK(i["intersections"]["cloth_cloth"] == 0);
+    CHECK(i["seam_gap_max"] == 0.0);
+    CHECK(i["pieces"] == 1);
+    CHECK(i["border_loops"] == 4); // neck, hem, two sleeves
+    CHECK(i["turned_edges"] == 0);
+    CHECK(i["clearance_min"].get<double>() >= 1e-5);
+    CHECK(i["strain"]["warp"]["max"] <= i["strain"]["warp"]["limit"]);
+    CHECK(i["strain"]["weft"]["max"] <= i["strain"]["weft"]["limit"]);
+}
+
+} // namespace
+
+TEST_CASE("one command makes a garment, its report and its picture, and they agree") {
+    const TempFolder folder;
+    REQUIRE(run_toile({"form", "-o", folder / "form.obj", "--quiet"}).code == 0);
+    const Run r =
+        run_toile({"drape", tee, "--edge-length", "60mm", "-o", folder / "a.obj", "-o", folder / "a.glb",
+                   "--report", folder / "a.json", "--preview", folder / "a.png", "--threads", "1"});
+    INFO(r.err);
+    REQUIRE(r.code == 0);
+    CHECK_THAT(r.out, Contains("converged") && Contains("seams: closed") && Contains("a.mtl"));
+    CHECK(read_file(folder / "a.png", 1 << 26).substr(1, 3) == "PNG");
+
+    const nlohmann::json report = load_json(folder / "a.json");
+    CHECK(Schema("report.schema.json").complaints(report.dump()) == "");
+    CHECK(report["status"] == "converged");
+    CHECK(report["residual"] <= report["tolerance"]);
+    CHECK(report["threads"] == 1);
+    CHECK_THAT(report["blas"].get<std::string>(), Contains("OpenBLAS"));
+    CHECK(report["ease"]["bust"]["ease"].get<double>() > 0);
+    CHECK(report["seconds"]["total"].get<double>() >= report["seconds"]["sew"].get<double>());
+
+    const nlohmann::json obj = inspection(folder / "a.obj", folder / "form.obj");
+    const nlohmann::json glb = inspection(folder / "a.glb", folder / "form.obj");
+    require_sound(obj);
+    require_sound(glb);
+    for (const char* key : {"vertices", "nodes", "triangles", "pieces"}) {
+        CHECK(obj[key] == report[key]);
+        CHECK(glb[key] == report[key]);
+    }
+    CHECK(warp_max(obj) == Approx(warp_max(report)).margin(1e-12));
+    CHECK(warp_max(glb) == Approx(warp_max(report)).margin(1e-5));
+    if (const auto accepted = khronos_accepts(folder / "a.glb")) CHECK(*accepted);
+
+    // The same bytes for another number of threads.
+    REQUIRE(run_toile({"drape", tee, "--edge-length", "60mm", "-o", folder / "b.glb", "--report",
+                       folder / "b.json", "--threads", "2", "--quiet"})
+                .code == 0);
+    CHECK(read_file(folder / "a.glb", 1 << 26) == read_file(folder / "b.glb", 1 << 26));
+    const nlohmann::json second = load_json(folder / "b.json");
+    CHECK(second["result_hash"] == report["result_hash"]);
+    CHECK(second["input_hash"] == report["input_hash"]);
+
+    // What it is started from is input as well.
+    const Run again =
+        run_toile({"drape", tee, "--edge-length", "60mm", "--from", folder / "a.obj", "--json"});
+    INFO(again.err);
+    REQUIRE(again.code == 0);
+    const auto restarted = nlohmann::json::parse(again.out);
+    CHECK(Schema("report.schema.json").complaints(again.out) == "");
+    CHECK(restarted["input_hash"] != report["input_hash"]);
+}
+
+TEST_CASE("a drape that is stopped writes the state reached and says so") {
+    const TempFolder folder;
+    bool stop = false;
+    int calls = 0;
+    DrapeJob job;
+    job.pattern = tee;
+    job.edge_length = 0.06;
+    job.garments = {folder / "a.obj"};
+    job.report = folder / "a.json";
+    job.drape.progress = [&](const DrapeProgress&) { return !(stop = ++calls > 20); };
+    job.interrupted = [&] { return stop; };
+    CHECK(run_job(job).result.status == DrapeStatus::limit);
+    const nlohmann::json report = load_json(folder / "a.json");
+    CHECK(Schema("report.schema.json").complaints(report.dump()) == "");
+    CHECK(report["status"] == "limit");
+    CHECK_THAT(report["where"].get<std::string>(), Contains("stopped"));
+    CHECK(read_garment(folder / "a.obj").x.size() == report["nodes"].get<std::size_t>());
+}

@@ -36,6 +36,7 @@ public:
         split_panels();
         check_windings();
         clean_stitches();
+        leave_out_collapsing();
         name_seams();
         mark_eased();
         trace_borders();
@@ -166,6 +167,43 @@ private:
             if (seen.insert(key).second) kept.push_back(s);
         }
         g_.stitches = std::move(kept);
+    }
+
+    /// A stitch that would join two corners of a triangle, by itself or with those before it, is left out.
+    void leave_out_collapsing() {
+        std::vector<std::set<int>> beside(g_.node_count); // nodes that share a triangle
+        for (int t = 0; t < int(g_.triangles.size()); ++t)
+            for (int a : g_.nodes(t))
+                for (int b : g_.nodes(t))
+                    if (a != b) beside[a].insert(b);
+        std::vector<int> group(g_.node_count);
+        std::vector<std::vector<int>> members(g_.node_count);
+        for (int i = 0; i < g_.node_count; ++i) {
+            group[i] = i;
+            members[i] = {i};
+        }
+        const auto joins_neighbours = [&](int a, int b) {
+            for (int i : members[a])
+                for (int k : beside[i])
+                    if (group[k] == b) return true;
+            return false;
+        };
+        const auto out = [&](const Stitch& s) {
+            if (s.r != 0) return false;
+            const int a = group[s.a], b = group[s.b[0]];
+            if (a == b) return false;
+            if (joins_neighbours(a, b)) {
+                notes_.push_back(name_ + ": the stitch of nodes " + std::to_string(s.a) + " and " +
+                                 std::to_string(s.b[0]) +
+                                 " was left out, it would join two corners of a triangle");
+                return true;
+            }
+            for (int i : members[b])
+                group[i] = a;
+            members[a].insert(members[a].end(), members[b].begin(), members[b].end());
+            return false;
+        };
+        std::erase_if(g_.stitches, out);
     }
 
     /// A vertex of every node. Nodes of closed seams have several; the first one serves.

@@ -68,7 +68,22 @@ Contact::Contact(ContactCloth cloth, const TriMesh& body, const ContactOptions& 
         ring_[a].push_back(b);
         ring_[b].push_back(a);
     }
+    sewn_.resize(groups);
+    std::vector<std::pair<int, int>> near;
+    for (const auto& [node, end0, end1] : cloth_.sewn_to_edge)
+        for (const int end : {end0, end1}) {
+            const int a = cloth_.group[node], b = cloth_.group[end];
+            sewn_[a].push_back(b);
+            sewn_[b].push_back(a);
+            for (int next : ring_[a]) near.emplace_back(next, b);
+            for (int next : ring_[b]) near.emplace_back(next, a);
+        }
+    for (const auto& [a, b] : near) {
+        ring_[a].push_back(b);
+        ring_[b].push_back(a);
+    }
     for (auto& r : ring_) std::sort(r.begin(), r.end());
+    for (auto& r : sewn_) std::sort(r.begin(), r.end());
 }
 
 void Contact::set_options(const ContactOptions& options) {
@@ -189,10 +204,14 @@ void Contact::rebuild(const Points& x) {
         });
         for (auto& f : found) pairs_.insert(pairs_.end(), f.begin(), f.end());
     };
+    const auto sewn_to = [&](int i, int j) {
+        const auto& sewn = sewn_[cloth_.group[i]];
+        return !sewn.empty() && std::binary_search(sewn.begin(), sewn.end(), cloth_.group[j]);
+    };
     const auto shares_group = [&](std::initializer_list<int> a, std::initializer_list<int> b) {
         for (int i : a)
             for (int j : b)
-                if (cloth_.group[i] == cloth_.group[j]) return true;
+                if (cloth_.group[i] == cloth_.group[j] || sewn_to(i, j)) return true;
         return false;
     };
 

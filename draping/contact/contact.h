@@ -30,6 +30,9 @@ struct ContactCloth {
     std::vector<double> node_reach;        ///< m, smallest rest altitude of the triangles round a node
     /// Nodes of equal group count as one: the nodes of an open seam that closing will merge.
     std::vector<int> group;
+    /// A node and the ends of an edge to whose inside it is sewn: what holds the node and what holds the edge lie
+    /// on each other and do not touch.
+    std::vector<std::array<int, 3>> sewn_to_edge;
 };
 
 /// A point-triangle or edge-edge pair. Indices below the node count are nodes, others are body points.
@@ -112,6 +115,7 @@ private:
     Bvh body_triangle_tree_, body_edge_tree_, body_point_tree_;
     Bvh cloth_triangle_tree_, cloth_edge_tree_;
     std::vector<std::vector<int>> ring_; ///< groups next to a group, sorted
+    std::vector<std::vector<int>> sewn_; ///< groups that stitches to the inside of an edge join to a group, sorted
 
     bool built_ = false;
     std::vector<ContactPair> pairs_;

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/decisions.h"
+
+#include "geometry/bvh.h"
+#include "geometry/distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+namespace toile {
+
+namespace {
+
+std::string text(const char* format, auto... values) {
+    char buffer[512];
+    std::snprintf(buffer, sizeof buffer, format, values...);
+    return buffer;
+}
+
+std::string contact_sentence(const DrapeFacts& f) {
+    return text("contact of the cloth with itself was modelled: at the end %d pairs are within %.3g mm of "
+                "each other",
+                f.touch.cloth_pairs, 1e3 * f.clearance);
+}
+
+std::string friction_sentence(const DrapeFacts& f, int nodes) {
+    if (f.friction <= 0)
+        return text("friction was left out: its coefficient is 0 (%d of %d nodes touch the body)",
+                    f.touch.touching_nodes, nodes);
+    return text("Coulomb friction with coefficient %.3g was modelled between cloth and body, which touch at %d "
+                "of %d nodes with %.3g N in all; friction of cloth on cloth was left out (%d pairs touch)",
+                f.friction, f.touch.touching_nodes, nodes, f.touch.press, f.touch.cloth_pairs);
+}
+
+std::string level_sentence(const DrapeFacts& f) {
+    if (f.restarted)
+        return text("one level, %.3g mm: the start is an earlier drape", 1e3 * f.edge_lengths.back());
+    if (f.edge_lengths.size() == 1)
+        return text("one level, %.3g mm: the mesh was taken as it came or is that coarse",
+                    1e3 * f.edge_lengths.back());
+    std::string list;
+    for (double e : f.edge_lengths)
+        list += (list.empty() ? "" : ", ") + text("%.3g", 1e3 * e);
+    return "levels of " + list + " mm, each twice as fine as the one before, the first one from 40 mm on";
+}
+
+std::string hook_sentence(const HookFacts& h) {
+    if (h.held)
+        return text("hooks held the edges labelled \"%s\" to the end, as asked: at %.1f cm on average, where "
+                    "the file puts them at %.1f cm",
+                    h.label.c_str(), 100 * h.end, 100 * h.placed);
+    return text("hooks held the edges labelled \"%s\" while the coarsest level settled; since they were "
+                "released the edges moved by %+.1f mm in height, to %+.1f mm from where the file puts them",
+                h.label.c_str(), 1e3 * (h.end - h.released), 1e3 * (h.end - h.placed));
+}
+
+std::string growth_sentence(const DrapeFacts& f) {
+    std::string list;
+    for (std::size_t l = 0; l < f.drawn_in.size(); ++l)
+        if (f.drawn_in[l] > 0)
+            list += (list.empty() ? "" : ", ") +
+                    text("%.0f mm at the level of %.3g mm", 1e3 * f.drawn_in[l], 1e3 * f.edge_lengths[l]);
+    if (list.empty()) return "the body was never drawn in: the cloth started clear of it on every level";
+    return "the body was drawn in and grew back under contact, since the cloth started in it: " + list;
+}
+
+void limit_sentences(const Garment& g, const Points& x, const PanelFabrics& fabrics,
+                     std::vector<std::string>& out) {
+    const StrainMeasure s = measure_strain(g, x, fabrics);
+    std::vector<std::string> without;
+    for (const Fabric& f : fabrics)
+        if (f.limit_warp == 0 && f.limit_weft == 0 && f.limit_shear == 0 &&
+            std::find(without.begin(), without.end(), f.name) == without.end())
+            without.push_back(f.name);
+    for (const std::string& name : without)
+        out.push_back("strain limits were left out for " + name + ", which has none; its largest strain is " +
+                      text("%.1f %% (warp) and %.1f %% (weft)", 100 * s.warp.max, 100 * s.weft.max));
+    const auto reached = [&](double most, double limit, double unit, const char* what, const char* sign) {
+        if (limit <= 0) return;
+        out.push_back(text("the limit of %s was modelled: the largest is %.3g of %.3g %s", what, unit * most,
+                           unit * limit, sign));
+    };
+    const double shear = std::max(std::abs(s.shear.min), std::abs(s.shear.max));
+    reached(s.warp.max, s.limit_warp, 100, "warp strain", "%");
+    reached(s.weft.max, s.limit_weft, 100, "weft strain", "%");
+    reached(shear, s.limit_shear, 180 / EIGEN_PI, "shear angle", "degrees");
+}
+
+} // namespace
+
+TouchFacts count_touching(const Contact& contact, const Points& x) {
+    TouchFacts facts;
+    const std::vector<ActivePair> active = contact.active(x);
+    for (const ActivePair& a : active)
+        ++(contact.pair(a.pair).with_body ? facts.body_pairs : facts.cloth_pairs);
+    for (const Vec3& force : contact.body_forces(active)) {
+        facts.touching_nodes += force.squaredNorm() > 0;
+        facts.press += force.norm();
+    }
+    return facts;
+}
+
+double right_side_out(const Garment& g, const Points& x, const TriMesh& body) {
+    const Bvh tree(triangle_boxes(body.points, body.triangles, 0));
+    double out = 0, all = 0;
+    for (int t = 0; t < int(g.triangles.size()); ++t) {
+        const Triangle n = g.nodes(t);
+        const Vec3 centre = (x[n[0]] + x[n[1]] + x[n[2]]) / 3;
+        const Vec3 area = (x[n[1]] - x[n[0]]).cross(x[n[2]] - x[n[0]]);
+        const auto nearest = [&](int i) {
+            const Triangle& b = body.triangles[i];
+            return nearest_point_triangle(centre, body.points[b[0]], body.points[b[1]], body.points[b[2]]);
+        };
+        double limit = std::numeric_limits<double>::infinity();
+        const int i = tree.nearest(centre, limit, [&](int k) { return nearest(k).squared; });
+        if (i < 0) return 0;
+        const Nearest at = nearest(i);
+        Vec3 foot = Vec3::Zero();
+        for (int k = 0; k < 3; ++k)
+            foot += at.weight[k + 1] * body.points[body.triangles[i][k]];
+        all += area.norm();
+        if (area.dot(centre - foot) > 0) out += area.norm();
+    }
+    return all > 0 ? out / all : 0;
+}
+
+std::vector<std::string> decisions(const DrapeFacts& f, const Garment& g, const Points& x,
+                                   const PanelFabrics& fabrics, const TriMesh& body) {
+    std::vector<std::string> out{level_sentence(f), contact_sentence(f), friction_sentence(f, g.node_count),
+                                 growth_sentence(f)};
+    for (const HookFacts& h : f.hooks)
+        out.push_back(hook_sentence(h));
+    if (f.hooks.empty())
+        out.push_back(f.restarted ? "no hooks were used: the start is an earlier drape"
+                                  : "no hooks were used or released: no labelled edge carries the garment");
+    if (f.pins > 0) out.push_back(text("%d nodes were pinned where they start out", f.pins));
+    if (f.band_segments > 0)
+        out.push_back(text("elastic bands of %.1f cm relaxed, in %d segments, are %.1f cm long and pull with "
+                           "up to %.3g N; their cloth counts as gathered",
+                           100 * f.band_rest, f.band_segments, 100 * f.band_length, f.band_pull));
+    if (f.inner_stitches > 0)
+        out.push_back(text("%d stitches to the inside of an edge stayed springs, the widest %.2g mm open; "
+                           "triangles that such a stitch joins do not touch each other",
+                           f.inner_stitches, 1e3 * f.inner_gap));
+    limit_sentences(g, x, fabrics, out);
+    if (!body.triangles.empty())
+        out.push_back(text("the fabric's right side looks away from the body on %.1f %% of the area",
+                           100 * right_side_out(g, x, body)));
+    return out;
+}
+
+} // namespace toile

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/staging.h"
+
+#include "sewing/arrange.h"
+
+#include <algorithm>
+#include <map>
+
+namespace toile {
+
+namespace {
+
+constexpr double gathered = 0.98; // an elastic of a smaller ratio gathers its cloth
+
+double mean_flat_edge(const Garment& g) {
+    double sum = 0;
+    for (const Mat2& e : g.rest.edges)
+        sum += e.col(0).norm() + e.col(1).norm() + (e.col(1) - e.col(0)).norm();
+    return g.rest.edges.empty() ? 0 : sum / (3 * double(g.rest.edges.size()));
+}
+
+std::vector<std::string> names_by_panels(const Garment& g) {
+    std::vector<int> panel(g.node_count, -1);
+    for (int v = int(g.uv.size()) - 1; v >= 0; --v)
+        panel[g.node_of_vertex[v]] = g.panel_of_vertex[v];
+    std::vector<std::string> names;
+    for (const Stitch& s : g.stitches) {
+        if (s.seam >= int(names.size())) names.resize(s.seam + 1);
+        if (names[s.seam].empty())
+            names[s.seam] = "the seam of panels " + g.panel_names[panel[s.a]] + " and " +
+                            g.panel_names[panel[s.b[0]]];
+    }
+    return names;
+}
+
+void mark_gathered(Garment& g, const std::vector<Elastic>& elastics) {
+    std::vector<bool> on_elastic(g.uv.size(), false);
+    for (const Elastic& elastic : elastics)
+        if (elastic.ratio < gathered)
+            for (int v : vertices_along(g, elastic.span))
+                on_elastic[v] = true;
+    for (std::size_t t = 0; t < g.triangles.size(); ++t)
+        for (int v : g.triangles[t])
+            if (on_elastic[v]) g.eased_triangle[t] = true;
+}
+
+} // namespace
+
+Staging stage(const Pattern& pattern, const FlatPattern& flat) {
+    Staging s;
+    s.pins = pattern.pins;
+    s.elastics = pattern.elastics;
+    s.prolongation = flat.prolongation;
+    for (const Seam& seam : pattern.seams)
+        s.seam_names.push_back(seam.name);
+    for (const FlatLevel& level : flat.levels) {
+        s.levels.push_back({level.edge_length, sew(pattern, level), place(pattern, level)});
+        mark_gathered(s.levels.back().garment, s.elastics);
+    }
+    return s;
+}
+
+Staging stage(Garment garment, Points placed, std::vector<Pin> pins, std::vector<Elastic> elastics) {
+    Staging s;
+    s.pins = std::move(pins);
+    s.elastics = std::move(elastics);
+    mark_gathered(garment, s.elastics);
+    s.seam_names = names_by_panels(garment);
+    const double edge = mean_flat_edge(garment);
+    s.levels.push_back({edge, std::move(garment), std::move(placed)});
+    return s;
+}
+
+std::vector<std::pair<int, Vec3>> pinned_places(const Staging& staging, int level, const Garment& garment) {
+    const StagedLevel& staged = staging.levels[level];
+    std::map<int, std::pair<Vec3, int>> sum;
+    for (const Pin& pin : staging.pins)
+        for (int v : vertices_along(garment, pin.span)) {
+            auto& [place, count] = sum.try_emplace(garment.node_of_vertex[v], Vec3::Zero(), 0).first->second;
+            place += staged.placed[staged.garment.node_of_vertex[v]];
+            ++count;
+        }
+    std::vector<std::pair<int, Vec3>> places;
+    for (const auto& [node, s] : sum)
+        places.emplace_back(node, s.first / s.second);
+    return places;
+}
+
+std::vector<ElasticSegment> elastic_segments(const Staging& staging, const Garment& garment) {
+    std::vector<ElasticSegment> segments;
+    for (const Elastic& elastic : staging.elastics) {
+        const std::vector<int> line = vertices_along(garment, elastic.span);
+        for (std::size_t k = 0; k + 1 < line.size(); ++k) {
+            const int a = garment.node_of_vertex[line[k]], b = garment.node_of_vertex[line[k + 1]];
+            const double length = (garment.uv[line[k + 1]] - garment.uv[line[k]]).norm();
+            if (a != b) segments.push_back({a, b, elastic.ratio * length, elastic.stiffness});
+        }
+    }
+    return segments;
+}
+
+} // namespace toile

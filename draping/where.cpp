@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/where.h"
+
+#include <Eigen/LU>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <map>
+
+namespace toile {
+
+namespace {
+
+std::string coordinates(const Vec3& p) {
+    char text[80];
+    std::snprintf(text, sizeof text, "(%.3f, %.3f, %.3f) m", p.x(), p.y(), p.z());
+    return text;
+}
+
+int panel_of_node(const Garment& g, int node) {
+    for (std::size_t v = 0; v < g.node_of_vertex.size(); ++v)
+        if (g.node_of_vertex[v] == node) return g.panel_of_vertex[v];
+    return -1;
+}
+
+std::string on_panel(const Garment& g, int panel, const Vec3& at) {
+    return (panel < 0 ? "" : "panel \"" + g.panel_names[panel] + "\" ") + "at " + coordinates(at);
+}
+
+Vec3 seam_point(const Stitch& s, const Points& x) {
+    return (1 - s.r) * x[s.b[0]] + s.r * x[s.b[1]];
+}
+
+/// Share of the way from a to b at which a triangle is crossed; infinity when it is not.
+double crossing(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q, const Vec3& r) {
+    constexpr double none = std::numeric_limits<double>::infinity();
+    Mat3 m;
+    m << a - b, q - p, r - p;
+    if (std::abs(m.determinant()) < 1e-18) return none;
+    const Vec3 s = m.inverse() * (a - p);
+    return s[0] > 0 && s[0] < 1 && s[1] >= 0 && s[2] >= 0 && s[1] + s[2] <= 1 ? s[0] : none;
+}
+
+/// The middle of the thread's way through the body.
+bool thread_in_body(const Vec3& a, const Vec3& b, const TriMesh& body, Vec3& at) {
+    double first = 2, last = -1;
+    for (const Triangle& t : body.triangles) {
+        const double s = crossing(a, b, body.points[t[0]], body.points[t[1]], body.points[t[2]]);
+        if (!std::isfinite(s)) continue;
+        first = std::min(first, s);
+        last = std::max(last, s);
+    }
+    at = a + (first + last) / 2 * (b - a);
+    return last >= 0;
+}
+
+/// The first triangle of the cloth that the thread passes through, apart from those of its own ends; -1: none.
+int thread_through_cloth(const Garment& g, const Points& x, const Stitch& s) {
+    int found = -1;
+    double least = 2;
+    for (int t = 0; t < int(g.triangles.size()); ++t) {
+        const Triangle n = g.nodes(t);
+        if (std::any_of(n.begin(), n.end(), [&](int i) { return i == s.a || i == s.b[0] || i == s.b[1]; }))
+            continue;
+        const double at = crossing(x[s.a], seam_point(s, x), x[n[0]], x[n[1]], x[n[2]]);
+        if (at < least) {
+            least = at;
+            found = t;
+        }
+    }
+    return found;
+}
+
+/// A triangle's part of a horizontal section.
+struct Cut {
+    double space = 0;   ///< m, length in space
+    double allowed = 0; ///< m, what its flat length may be stretched to
+};
+
+/// Yarn limits as an ellipse: what the cloth may be stretched to along a direction of the flat.
+double allowed_length(const Vec2& flat, const Fabric& f) {
+    const double length = flat.norm();
+    if (length == 0) return 0;
+    const double weft = flat.x() * flat.x(), warp = flat.y() * flat.y();
+    return length + (f.limit_weft * weft + f.limit_warp * warp) / length;
+}
+
+bool cut_triangle(const Garment& g, const Points& x, const PanelFabrics& fabrics, int t, double y, Cut& cut) {
+    const Triangle n = g.nodes(t);
+    const Mat2& e = g.rest.edges[t];
+    const Vec2 flat[3] = {Vec2::Zero(), e.col(0), e.col(1)};
+    Vec3 in_space[2];
+    Vec2 in_flat[2];
+    int ends = 0;
+    for (int k = 0; k < 3; ++k) {
+        const int l = (k + 1) % 3;
+        const double a = x[n[k]].y() - y, b = x[n[l]].y() - y;
+        if ((a >= 0) == (b >= 0) || ends == 2) continue;
+        const double s = a / (a - b);
+        in_space[ends] = (1 - s) * x[n[k]] + s * x[n[l]];
+        in_flat[ends++] = (1 - s) * flat[k] + s * flat[l];
+    }
+    if (ends < 2) return false;
+    cut = {(in_space[1] - in_space[0]).norm(),
+           allowed_length(in_flat[1] - in_flat[0], fabrics[g.panel_of_triangle[t]])};
+    return true;
+}
+
+/// By how much the section at height y, as far as triangles are connected to `seed`, is longer than allowed:
+/// with those that are shorter making up for others, and without. `connected` has the triangles' neighbours.
+struct Excess {
+    double sum = 0, over = 0;
+};
+Excess section_excess(const Garment& g, const EdgeTable& connected, const Points& x, const PanelFabrics& fabrics,
+                      int seed, double y) {
+    std::vector<char> seen(g.triangles.size(), 0);
+    std::vector<int> open{seed};
+    seen[seed] = 1;
+    Excess excess;
+    while (!open.empty()) {
+        const int t = open.back();
+        open.pop_back();
+        Cut cut;
+        if (!cut_triangle(g, x, fabrics, t, y, cut)) continue;
+        excess.sum += cut.space - cut.allowed;
+        excess.over += std::max(0.0, cut.space - cut.allowed);
+        for (int edge : connected.of_triangle[t]) {
+            for (int i = connected.first[edge]; i < connected.first[edge + 1]; ++i) {
+                const int next = connected.incident[i];
+                if (!seen[next]) open.push_back(next);
+                seen[next] = 1;
+            }
+        }
+    }
+    return excess;
+}
+
+/// Gaps at height y, one per seam: of the stitch that is nearest to it, when that is near.
+double gaps_at(const Garment& g, const Points& x, double y) {
+    std::map<int, std::pair<double, double>> nearest; // by seam: distance in height, gap
+    for (const Stitch& s : g.stitches) {
+        const Vec3 to = seam_point(s, x);
+        const double away = std::abs(0.5 * (x[s.a].y() + to.y()) - y);
+        if (away > std::max(s.length, 0.005)) continue;
+        const auto [at, fresh] = nearest.try_emplace(s.seam, away, (x[s.a] - to).norm());
+        if (!fresh && away < at->second.first) at->second = {away, (x[s.a] - to).norm()};
+    }
+    double sum = 0;
+    for (const auto& [seam, gap] : nearest)
+        sum += gap.second;
+    return sum;
+}
+
+} // namespace
+
+std::string place_of_node(const Garment& g, const Points& x, int node) {
+    return on_panel(g, panel_of_node(g, node), x[node]);
+}
+
+std::string place_of_triangle(const Garment& g, const Points& x, int t) {
+    const Triangle n = g.nodes(t);
+    return on_panel(g, g.panel_of_triangle[t], (x[n[0]] + x[n[1]] + x[n[2]]) / 3);
+}
+
+std::string place_of_pair(const Garment& g, const Points& x, const ContactPair& pair) {
+    std::string first, second;
+    for (int i : pair.p) {
+        if (i >= g.node_count) continue;
+        const std::string place = place_of_node(g, x, i);
+        if (first.empty())
+            first = place;
+        else if (second.empty() && !pair.with_body && i != pair.p[1])
+            second = place;
+    }
+    return first + " against " + (pair.with_body ? "the body" : second);
+}
+
+int widest_stitch(const Garment& g, const Points& x) {
+    int widest = -1;
+    double most = -1;
+    for (int k = 0; k < int(g.stitches.size()); ++k) {
+        const double gap = (x[g.stitches[k].a] - seam_point(g.stitches[k], x)).norm();
+        if (gap <= most) continue;
+        most = gap;
+        widest = k;
+    }
+    return widest;
+}
+
+std::string open_seam(const Garment& g, const Points& x, const std::vector<std::string>& seam_names,
+                      const TriMesh& body, const std::vector<ContactPair>& touching) {
+    const int k = widest_stitch(g, x);
+    if (k < 0) return "";
+    const Stitch& s = g.stitches[k];
+    char gap[32];
+    std::snprintf(gap, sizeof gap, "%.1f mm", 1e3 * (x[s.a] - seam_point(s, x)).norm());
+    const std::string name =
+        s.seam < int(seam_names.size()) ? seam_names[s.seam] : "seam " + std::to_string(s.seam);
+    std::string text = name + " does not close: " + gap + " are left between " + place_of_node(g, x, s.a) +
+                       " and " + place_of_node(g, x, s.b[0]) + "; ";
+    Vec3 inside;
+    if (thread_in_body(x[s.a], seam_point(s, x), body, inside))
+        return text + "the body is between them at " + coordinates(inside);
+    if (const int t = thread_through_cloth(g, x, s); t >= 0)
+        return text + place_of_triangle(g, x, t) + " is between them";
+    for (const ContactPair& pair : touching)
+        for (int i : pair.p)
+            if (i == s.a || i == s.b[0] || i == s.b[1])
+                return text + "what touches there is " + place_of_pair(g, x, pair);
+    return text + "nothing is in the way there, the cloth round it is held back";
+}
+
+Tightness find_tightness(const Garment& g, const Points& x, const PanelFabrics& fabrics) {
+    Tightness worst;
+    double most = 0;
+    for (int t = 0; t < int(g.triangles.size()); ++t) {
+        const Fabric& f = fabrics[g.panel_of_triangle[t]];
+        const Triangle n = g.nodes(t);
+        Eigen::Matrix<double, 3, 2> edges;
+        edges << x[n[1]] - x[n[0]], x[n[2]] - x[n[0]];
+        const Eigen::Matrix<double, 3, 2> yarns = edges * g.rest.edges[t].inverse();
+        for (const bool warp : {false, true}) {
+            const double limit = warp ? f.limit_warp : f.limit_weft;
+            const double strain = yarns.col(warp ? 1 : 0).norm() - 1;
+            if (limit <= 0 || strain - limit <= most) continue;
+            most = strain - limit;
+            worst = {t, strain, limit, warp, 0};
+        }
+    }
+    if (worst.triangle < 0) return worst;
+    const Triangle n = g.nodes(worst.triangle);
+    const double y = (x[n[0]].y() + x[n[1]].y() + x[n[2]].y()) / 3;
+    const Excess excess = section_excess(g, g.edges, x, fabrics, worst.triangle, y);
+    worst.missing = excess.sum > 0 ? excess.sum : excess.over;
+    return worst;
+}
+
+double missing_at_open_seam(const Garment& g, const Points& x, const PanelFabrics& fabrics) {
+    const int k = widest_stitch(g, x);
+    if (k < 0) return 0;
+    const Stitch& s = g.stitches[k];
+    const double y = 0.5 * (x[s.a].y() + seam_point(s, x).y());
+    const EdgeTable closed = close_seams(g).edges;
+    Cut cut;
+    for (int t = 0; t < int(g.triangles.size()); ++t)
+        if (g.panel_of_triangle[t] == panel_of_node(g, s.a) && cut_triangle(g, x, fabrics, t, y, cut))
+            return section_excess(g, closed, x, fabrics, t, y).sum + gaps_at(g, x, y);
+    return 0;
+}
+
+} // namespace toile

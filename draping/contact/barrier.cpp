@@ -88,10 +88,13 @@ Eigen::Matrix<double, 12, 12> distance_hessian(const std::array<Vec3, 4>& x, con
     return (h - gradient * gradient.transpose()) / g.d;
 }
 
+// Squared sine of the angle between edges, times their squared lengths, below which they fade: a share of `scale`.
+constexpr double fade_share = 1e-3;
+
 ParallelFade parallel_fade(const std::array<Vec3, 4>& x, double scale) {
     ParallelFade fade;
     const Vec3 u = x[1] - x[0], v = x[3] - x[2];
-    const double c = u.cross(v).squaredNorm(), limit = 1e-3 * scale;
+    const double c = u.cross(v).squaredNorm(), limit = fade_share * scale;
     if (c >= limit) return fade;
     fade.fading = true;
     const double y = c / limit;
@@ -100,6 +103,26 @@ ParallelFade parallel_fade(const std::array<Vec3, 4>& x, double scale) {
     const Vec3 du = 2 * (v.squaredNorm() * u - u.dot(v) * v), dv = 2 * (u.squaredNorm() * v - u.dot(v) * u);
     fade.gradient = {-slope * du, slope * du, -slope * dv, slope * dv};
     return fade;
+}
+
+Eigen::Matrix<double, 12, 12> parallel_fade_hessian(const std::array<Vec3, 4>& x, double scale) {
+    const Vec3 u = x[1] - x[0], v = x[3] - x[2];
+    const double limit = fade_share * scale, y = u.cross(v).squaredNorm() / limit;
+    // Over (u, v): c = |u|^2 |v|^2 - (u.v)^2, value = y (2 - y), y = c / limit.
+    Eigen::Matrix<double, 6, 1> dc;
+    dc << 2 * (v.squaredNorm() * u - u.dot(v) * v), 2 * (u.squaredNorm() * v - u.dot(v) * u);
+    Eigen::Matrix<double, 6, 6> h = -2 / (limit * limit) * dc * dc.transpose();
+    const double slope = 2 * (1 - y) / limit;
+    const Mat3 mixed = 4 * u * v.transpose() - 2 * v * u.transpose() - 2 * u.dot(v) * Mat3::Identity();
+    h.topLeftCorner<3, 3>() += slope * 2 * (v.squaredNorm() * Mat3::Identity() - v * v.transpose());
+    h.bottomRightCorner<3, 3>() += slope * 2 * (u.squaredNorm() * Mat3::Identity() - u * u.transpose());
+    h.topRightCorner<3, 3>() += slope * mixed;
+    h.bottomLeftCorner<3, 3>() += slope * mixed.transpose();
+    Eigen::Matrix<double, 12, 12> over_points;
+    for (int a = 0; a < 4; ++a)
+        for (int b = 0; b < 4; ++b)
+            over_points.block<3, 3>(3 * a, 3 * b) = (a % 2 == b % 2 ? 1 : -1) * h.block<3, 3>(3 * (a / 2), 3 * (b / 2));
+    return over_points;
 }
 
 } // namespace toile

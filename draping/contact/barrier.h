@@ -45,4 +45,7 @@ struct ParallelFade {
 };
 ParallelFade parallel_fade(const std::array<Vec3, 4>& x, double scale);
 
+/// Second derivative of the fade's value over the twelve coordinates.
+Eigen::Matrix<double, 12, 12> parallel_fade_hessian(const std::array<Vec3, 4>& x, double scale);
+
 } // namespace toile

@@ -31,6 +31,24 @@ Box grown(Box box, double margin) {
     return box;
 }
 
+using Matrix12 = Eigen::Matrix<double, 12, 12>;
+
+/// What the second derivative of a pair's energy has beside that of the barrier along the normal: the curvature of
+/// the distance, and the fade of edges that are all but parallel.
+Matrix12 curvature_of_distance(const std::array<Vec3, 4>& x, const ActivePair& a, const ContactPair& p,
+                               const Barrier& b) {
+    const PairGeometry& g = a.geometry;
+    const double slope = p.weight * b.slope(g.d);
+    Matrix12 h = a.fade.value * slope * distance_hessian(x, g, p.edge_edge);
+    if (!a.fade.fading) return h;
+    h += p.weight * b.energy(g.d) * parallel_fade_hessian(x, p.fade);
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 4; ++j)
+            h.block<3, 3>(3 * i, 3 * j) += slope * (a.fade.gradient[i] * (g.weight[j] * g.normal).transpose() +
+                                                    g.weight[i] * g.normal * a.fade.gradient[j].transpose());
+    return h;
+}
+
 template <std::size_t N>
 std::vector<Box> simplex_boxes(const Points& x, const std::vector<std::array<int, N>>& s,
                                const std::vector<double>& slack) {
@@ -308,16 +326,15 @@ bool Contact::add_hessian(const Points& x, const std::vector<ActivePair>& active
         const Barrier b = barrier(p);
         const double scale = p.weight * a.fade.value;
         const double curvature = scale * b.curvature(a.geometry.d);
-        Eigen::Matrix<double, 12, 12> bend;
-        const bool bent = exact && !a.fade.fading;
-        if (bent) bend = scale * b.slope(a.geometry.d) * distance_hessian(corners(x, p), a.geometry, p.edge_edge);
+        Matrix12 bend;
+        if (exact) bend = curvature_of_distance(corners(x, p), a, p, b);
         const Mat3 normal = curvature * a.geometry.normal * a.geometry.normal.transpose();
         for (int i = 0; i < 4; ++i) {
             if (p.p[i] >= nodes_) continue;
             for (int j = 0; j < 4; ++j) {
                 if (p.p[j] >= nodes_ || p.p[j] > p.p[i]) continue;
                 Mat3 block = a.geometry.weight[i] * a.geometry.weight[j] * normal;
-                if (bent) block += bend.block<3, 3>(3 * i, 3 * j);
+                if (exact) block += bend.block<3, 3>(3 * i, 3 * j);
                 if (i == j) {
                     h.add_diagonal(p.p[i], block);
                 } else if (const int slot = h.find(p.p[i], p.p[j]); slot >= 0) {

@@ -1,19 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/cloth.h"
+#include "draping/contact/contact.h"
+#include "draping/contact/friction.h"
 #include "draping/energy/bend.h"
+#include "draping/energy/spring.h"
 #include "draping/energy/stretch.h"
 
 #include "tests/support/energy_checks.h"
+#include "tests/support/shapes.h"
 
 #include <catch2/catch.hpp>
 
+#include <memory>
+
 using namespace toile;
 using namespace toile::test;
+using Eigen::VectorXd;
 
 namespace {
 
 Fabric woven() {
     Fabric f;
     f.name = "woven";
+    f.density = 0.15;
     f.stretch_warp = 2000;
     f.stretch_weft = 900;
     f.poisson = 0.3;
@@ -34,24 +43,229 @@ const FlatMesh& mesh() {
     return m;
 }
 
-// Every energy of the cloth, one line each.
-std::vector<TestedEnergy> energies(const Points& x) {
+Points shaken(Points x, double by, std::uint64_t seed) {
+    Random random(seed);
+    for (Vec3& p : x)
+        p += random.vec3(by);
+    return x;
+}
+
+// ---- the sheet itself
+
+void add_sheet(std::vector<EnergyCase>& cases) {
     const Garment g = garment_of(mesh(), 0.3);
     const std::vector<Fabric> f{woven()};
-    std::vector<StrainLimit> limits = make_strain_limits(g, f);
-    widen_strain_limits(limits, x, 0.2);
-    return {
-        stretch_energy("stretch", make_stretch(g, f)),
-        stretch_energy("stretch with chords", make_stretch(g, f, {false})),
-        strain_limit_energy("strain limit", limits),
-        bend_energy("bend", make_bending(g, f)),
+    for (const TestedState& state : tested_states(mesh())) {
+        std::vector<StrainLimit> limits = make_strain_limits(g, f);
+        widen_strain_limits(limits, state.x, 0.2);
+        cases.push_back({stretch_energy("stretch", make_stretch(g, f)), state});
+        cases.push_back({stretch_energy("stretch with chords", make_stretch(g, f, {false})), state});
+        cases.push_back({strain_limit_energy("strain limit", limits), state});
+        cases.push_back({bend_energy("bend", make_bending(g, f)), state});
+    }
+}
+
+// ---- contact
+
+constexpr Barrier barrier{2e-3, 1e-4, 1e5};
+
+// Two triangles of cloth.
+ContactCloth two_sheets() {
+    ContactCloth c;
+    c.triangles = {{0, 1, 2}, {3, 4, 5}};
+    c.edges = {{0, 1}, {0, 2}, {1, 2}, {3, 4}, {3, 5}, {4, 5}};
+    c.node_area.assign(6, 1e-4);
+    c.edge_length.assign(6, 0.02);
+    c.edge_area.assign(6, 1e-4);
+    c.node_reach.assign(6, 0.01);
+    c.group = {0, 1, 2, 3, 4, 5};
+    return c;
+}
+
+TriMesh tetrahedron() {
+    TriMesh m;
+    m.points = {{-0.05, 0, -0.05}, {0.06, 0, -0.04}, {0.0, 0, 0.07}, {0, -0.1, 0}};
+    m.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    return m;
+}
+
+enum class Pairs { node_triangle, edge_edge, any };
+
+// `pairs`: what is to act at the state, and nothing else.
+void add_contact(std::vector<EnergyCase>& cases, const std::string& name, const TriMesh& body,
+                 const Points& x, Pairs pairs, double step = 1e-8) {
+    INFO(name);
+    const auto contact = std::make_shared<Contact>(two_sheets(), body, ContactOptions{barrier, barrier});
+    const auto active = [contact](const Points& at) {
+        contact->prepare(at, VectorXd::Zero(3 * at.size()));
+        return contact->active(at);
     };
+    REQUIRE(!active(x).empty());
+    for (const ActivePair& a : active(x))
+        if (pairs != Pairs::any) REQUIRE(contact->pair(a.pair).edge_edge == (pairs == Pairs::edge_edge));
+    const TestedEnergy energy = block_energy(
+        "contact", [=](const Points& at) { return contact->value(active(at)); },
+        [=](const Points& at, VectorXd& g) { contact->add_gradient(active(at), g); },
+        [=](const Points& at, HessianKind kind, BlockMatrix& h) {
+            REQUIRE(contact->add_hessian(at, active(at), kind == HessianKind::exact, h));
+        });
+    cases.push_back({energy, {name, x, step}, body.points.empty()});
+}
+
+void add_contacts(std::vector<EnergyCase>& cases) {
+    // The corner 3 of an upright triangle over a level one.
+    const auto node_at = [](const Vec3& p) -> Points {
+        return {{0, 0, 0},
+                {0.02, 0.001, 0},
+                {0.005, 0, 0.018},
+                p,
+                p + Vec3(0.004, 0.02, 0.001),
+                p + Vec3(-0.003, 0.021, 0.002)};
+    };
+    add_contact(cases, "node over the inside", {}, shaken(node_at({0.008, 0.0012, 0.006}), 1e-4, 1),
+                Pairs::node_triangle);
+    add_contact(cases, "node over the inside, near the floor", {}, node_at({0.008, 0.00053, 0.006}),
+                Pairs::node_triangle, 1e-9);
+    add_contact(cases, "node beyond an edge", {}, shaken(node_at({0.01, 0.0009, -0.0008}), 1e-5, 2),
+                Pairs::any);
+    add_contact(cases, "node beyond a corner", {}, shaken(node_at({-0.0005, 0.0008, -0.0004}), 1e-5, 3),
+                Pairs::any);
+
+    // A roof's ridge 0-1 under the keel 3-4 of another, turned by an angle.
+    const auto crossed = [](double angle, double gap) -> Points {
+        const Vec3 half(0.01 * std::cos(angle), 0, 0.01 * std::sin(angle)), up(3e-4, gap, 1e-4);
+        return {{-0.01, 0, 0.0004}, {0.0105, 0, 0},   {0, -0.02, 0.001},
+                up - half,          up + 0.95 * half, {0.001, 0.022, 0}};
+    };
+    add_contact(cases, "edges crossed", {}, shaken(crossed(1.2, 1e-3), 1e-4, 4), Pairs::edge_edge);
+    add_contact(cases, "edges crossed, near the floor", {}, crossed(0.9, 1.3e-4), Pairs::edge_edge, 1e-9);
+    add_contact(cases, "edges all but parallel", {}, crossed(-0.017, 1e-3), Pairs::any, 1e-9);
+    add_contact(cases, "edges a little less parallel", {}, crossed(0, 1.5e-3), Pairs::any, 1e-9);
+
+    const Points over{{0.001, 0.0008, 0.002}, {0.021, 0.0011, 0.001},  {0.008, 0.0009, 0.019},
+                      {0.004, 0.0016, 0.005}, {0.018, 0.0024, -0.004}, {0.002, 0.0019, 0.014}};
+    add_contact(cases, "two sheets over each other", {}, over, Pairs::any);
+    add_contact(cases, "two sheets over a body", tetrahedron(), over, Pairs::any);
+    add_contact(
+        cases, "two sheets over a body's corner", tetrahedron(),
+        [&] {
+            Points moved = over;
+            for (Vec3& p : moved)
+                p += Vec3(0.049, 0.0002, -0.042);
+            return moved;
+        }(),
+        Pairs::any);
+}
+
+// ---- friction
+
+void add_friction(std::vector<EnergyCase>& cases) {
+    for (std::uint64_t seed : {1, 2}) {
+        Random random(seed);
+        Friction f;
+        f.coefficient = 0.3;
+        Points x;
+        // At its place, near it, about to give way, just sliding, far gone; off the body by some.
+        for (double slips : {0.0, 1e-10, 0.3, 0.999, 1.001, 1.5, 2.999, 3.001, 40.0, 0.5}) {
+            const Vec3 n = random.vec3().normalized(), t = n.cross(random.vec3()).normalized();
+            f.place.push_back(random.vec3(0.1));
+            f.normal.push_back(n);
+            f.force.push_back(x.size() < 9 ? random.in(1e-4, 1e-2) : 0);
+            x.push_back(f.place.back() + slips * f.slip * t + random.in(-1e-3, 1e-3) * n);
+        }
+        const TestedEnergy energy = block_energy(
+            "friction", [f](const Points& at) { return value(f, at); },
+            [f](const Points& at, VectorXd& g) { add_gradient(f, at, g); },
+            [f](const Points& at, HessianKind kind, BlockMatrix& h) {
+                (void)kind;
+                add_hessian(f, at, h);
+            });
+        cases.push_back({energy, {"sliding by more and more", x, 1e-10}, false});
+    }
+}
+
+// ---- springs
+
+void add_springs(std::vector<EnergyCase>& cases) {
+    const double k = 500, cap = 0.05; // a pull of 0.1 mm
+    const std::vector<StitchSpring> stitches{
+        {0, {1, 1}, 0, k, cap}, {1, {2, 3}, 0.3, k, cap}, {4, {0, 3}, 0.999, k, cap}, {5, {4, 4}, 0, k, cap}};
+    const std::vector<HookSpring> hooks{{0, {0.1, 0.2, 0.3}, Vec3::UnitY(), k, cap},
+                                        {1, {0, 0, 0}, Vec3::Ones(), k, cap},
+                                        {2, {0.05, 0, 0}, Vec3(1, 0, 1), k, cap}};
+    const TestedEnergy stitch = block_energy(
+        "stitches", [=](const Points& x) { return value(stitches, x); },
+        [=](const Points& x, VectorXd& g) { add_gradient(stitches, x, g); },
+        [=](const Points& x, HessianKind, BlockMatrix& h) { add_hessian(stitches, x, h); });
+    const TestedEnergy hook = block_energy(
+        "hooks", [=](const Points& x) { return value(hooks, x); },
+        [=](const Points& x, VectorXd& g) { add_gradient(hooks, x, g); },
+        [=](const Points& x, HessianKind, BlockMatrix& h) { add_hessian(hooks, x, h); });
+    const Points apart = shaken(Points(6, Vec3::Zero()), 0.05, 6);
+    // Gaps below the cap, one of them almost closed and one just beyond the cap.
+    Points near(6, Vec3(0.01, 0.02, 0.03));
+    near = shaken(near, 2e-5, 7);
+    near[4] = near[3] + Vec3(1e-9, 0, 0);
+    near[5] = near[4] + Vec3(0, 1.001e-4, 0);
+    Points at_hooks = near;
+    at_hooks[0] = Vec3(0.7, 0.20003, 0.2);
+    at_hooks[1] = Vec3(0, 0, 1e-9);
+    at_hooks[2] = Vec3(0.05, 9, 1.001e-4);
+    cases.push_back({stitch, {"far apart", apart}});
+    cases.push_back({stitch, {"all but closed", near, 1e-9}});
+    cases.push_back({hook, {"far apart", apart}, false});
+    cases.push_back({hook, {"all but closed", at_hooks, 1e-9}, false});
+}
+
+// ---- all of them together, as the solver meets them
+
+void add_problem(std::vector<EnergyCase>& cases) {
+    const Garment garment = garment_of(mesh());
+    const Barrier wide{5e-3, 5e-4, 1e5};
+    const auto problem = std::make_shared<ClothProblem>(garment, PanelFabrics{woven()},
+                                                        box(Vec3(0.05, -0.1, -0.05), Vec3(0.2, 0, 0.15)),
+                                                        ContactOptions{wide, wide});
+    problem->gravity = 9.81;
+    problem->stitches = {{0, {7, 7}, 0, 500, 0.05}, {3, {9, 10}, 0.4, 500, 5}};
+    problem->hooks = {{5, {0, 0.1, 0}, Vec3::UnitY(), 20, 0.1}};
+    Points x;
+    Random random(4);
+    for (const Vec2& p : mesh().points)
+        x.push_back(Vec3(p.x(), 0.003 + 0.002 * std::sin(40 * p.x()), p.y() - 0.05) + random.vec3(5e-4));
+    problem->rest_here(shaken(x, 1e-4, 8), 0.4);
+    problem->arrive(x);
+    const VectorXd still = VectorXd::Zero(3 * x.size());
+    const TestedEnergy energy{
+        "cloth problem", [=](const Points& at) { return problem->value(at); },
+        [=](const Points& at, Points& g) {
+            VectorXd part;
+            problem->feasible_step(at, still); // renews the pairs that act, and no more
+            problem->gradient(at, part);
+            flat(g) += part;
+        },
+        [=](const Points& at, HessianKind kind) {
+            bool changed = false;
+            problem->feasible_step(at, still);
+            const BlockMatrix& h = problem->hessian(at, kind == HessianKind::exact, changed);
+            if (kind == HessianKind::projected) return dense(h);
+            return dense(h.rows(), [&](const VectorXd& v, VectorXd& y) { problem->multiply(v, y); });
+        }};
+    cases.push_back({energy, {"on a body", x, 2e-8}, false});
+}
+
+std::vector<EnergyCase> every_energy() {
+    std::vector<EnergyCase> cases;
+    add_sheet(cases);
+    add_contacts(cases);
+    add_friction(cases);
+    add_springs(cases);
+    add_problem(cases);
+    return cases;
 }
 
 } // namespace
 
 TEST_CASE("energies: gradient and Hessian by finite differences, rigid motions, convex model", "[energies]") {
-    for (const TestedState& state : tested_states(mesh()))
-        for (const TestedEnergy& energy : energies(state.x))
-            check_energy(energy, state);
+    for (const EnergyCase& c : every_energy())
+        check_energy(c);
 }

@@ -3,6 +3,7 @@
 #include "draping/contact/contact.h"
 #include "draping/contact/friction.h"
 #include "draping/energy/bend.h"
+#include "draping/energy/elastic.h"
 #include "draping/energy/spring.h"
 #include "draping/energy/stretch.h"
 
@@ -217,6 +218,25 @@ void add_springs(std::vector<EnergyCase>& cases) {
     cases.push_back({hook, {"all but closed", at_hooks, 1e-9}, false});
 }
 
+// ---- elastic bands
+
+void add_elastic(std::vector<EnergyCase>& cases) {
+    // Along all sides of every third triangle, taut and slack in turn.
+    std::vector<ElasticSegment> bands;
+    for (std::size_t t = 0; t < mesh().triangles.size(); t += 3)
+        for (int k = 0; k < 3; ++k) {
+            const int a = mesh().triangles[t][k], b = mesh().triangles[t][(k + 1) % 3];
+            const double ratio = t % 2 == 0 ? 0.2 : 1.5;
+            bands.push_back({a, b, ratio * (mesh().points[a] - mesh().points[b]).norm(), 40});
+        }
+    const TestedEnergy energy = block_energy(
+        "elastic", [=](const Points& x) { return value(bands, x); },
+        [=](const Points& x, VectorXd& g) { add_gradient(bands, x, g); },
+        [=](const Points& x, HessianKind, BlockMatrix& h) { add_hessian(bands, x, h); });
+    for (const TestedState& state : tested_states(mesh()))
+        cases.push_back({energy, state});
+}
+
 // ---- all of them together, as the solver meets them
 
 void add_problem(std::vector<EnergyCase>& cases) {
@@ -259,6 +279,7 @@ std::vector<EnergyCase> every_energy() {
     add_contacts(cases);
     add_friction(cases);
     add_springs(cases);
+    add_elastic(cases);
     add_problem(cases);
     return cases;
 }

@@ -14,7 +14,7 @@ namespace {
 // The friction that is modelled stays a little below the limit, so that normal forces that still change by a few
 // per cent leave it within the limit.
 constexpr double friction_margin = 0.95;
-constexpr double limit_margin = 0.02; // a widened strain limit leaves this share of room
+constexpr double friction_rest = 10; // residual below which friction only gives way
 constexpr int renew_every = 8;        // arrivals after which what is lagged is renewed in any case
 
 double rest_area(const Mat2& edges) { return 0.5 * std::abs(edges.determinant()); }
@@ -87,11 +87,13 @@ void ClothProblem::rest_here(const Points& x, double coefficient) {
     friction.normal.assign(x.size(), Vec3::UnitY());
     friction.force.assign(x.size(), 0.0);
     arrivals_ = 0;
+    residual_ = renewed_at_ = std::numeric_limits<double>::infinity();
+    near_rest_ = false;
 }
 
-void ClothProblem::limit_strain(const Points& x) {
+void ClothProblem::limit_strain(double turn) {
     sheet_.limits = limits_;
-    widened_ = widen_strain_limits(sheet_.limits, x, limit_margin);
+    for (StrainLimit& limit : sheet_.limits) limit.turn = turn;
 }
 
 void ClothProblem::renew_friction() {
@@ -108,16 +110,31 @@ void ClothProblem::renew_friction() {
     }
 }
 
+void ClothProblem::weaken_friction(const Points& x) {
+    const Points force = contact_.body_forces(active_);
+    for (int i = 0; i < points(); ++i) {
+        if (!(friction.force[i] > 0)) continue;
+        const double now = force[i].norm();
+        if (friction_force(friction, x, i).norm() > friction.coefficient / friction_margin * now)
+            friction.force[i] = std::min(friction.force[i], now);
+    }
+}
+
 void ClothProblem::arrive(const Points& x) {
     contact_.prepare(x, Eigen::VectorXd::Zero(3 * points()));
     active_ = contact_.active(x);
-    // What is lagged is renewed when the solve with the old values has got somewhere.
+    if (friction.coefficient == 0) return;
+    // Near rest friction only gives way where it is more than contact can answer: less than that is friction
+    // too, and forces that follow one another up and down would not come to rest.
+    near_rest_ = near_rest_ || residual_ < friction_rest;
     const bool renew = arrivals_ % renew_every == 0 || residual_ < 0.1 * renewed_at_;
     ++arrivals_;
-    if (widened_ > 0 && arrivals_ % 2 == 0) limit_strain(x);
-    if (!renew) return;
-    renewed_at_ = residual_;
-    if (friction.coefficient > 0) renew_friction();
+    if (near_rest_) {
+        weaken_friction(x);
+    } else if (renew) {
+        renewed_at_ = residual_;
+        renew_friction();
+    }
 }
 
 double ClothProblem::value(const Points& x) {
@@ -177,18 +194,7 @@ void ClothProblem::multiply(const Eigen::VectorXd& v, Eigen::VectorXd& product) 
 double ClothProblem::feasible_step(const Points& x, const Eigen::VectorXd& dx) {
     contact_.prepare(x, dx);
     active_ = contact_.active(x);
-    double t = contact_.feasible_step(x, dx, nullptr, &blocking_);
-    blocking_triangle_ = -1;
-    if (!sheet_.limits.empty()) {
-        Points direction(x.size());
-        flat(direction) = t * dx;
-        const double s = strain_limit_step(sheet_.limits, x, direction, &blocking_triangle_);
-        if (s < 1) {
-            t *= 0.9 * s;
-            blocking_ = -1;
-        }
-    }
-    return t;
+    return contact_.feasible_step(x, dx, nullptr, &blocking_);
 }
 
 double ClothProblem::residual(const Points& x, const Eigen::VectorXd& g) {

@@ -39,16 +39,14 @@ public:
     /// Every touching or later touching node is tied by friction to where it is now.
     void rest_here(const Points& x, double coefficient);
 
-    /// Turns the strain limits on. Where x is beyond one, that limit is widened and then drawn in again as the
-    /// cloth gives way.
-    void limit_strain(const Points& x);
-    /// Triangles whose limit is still wider than the fabric's.
-    int widened() const { return widened_; }
+    /// Turns the strain limits on, as hard as `turn` says (see StrainLimit).
+    void limit_strain(double turn);
+    /// The triangles at or beyond a limit of their fabric.
+    std::vector<int> beyond_limits(const Points& x) const { return beyond_strain_limits(limits_, x); }
 
     /// The residual of `residual()` by node, and the node at which it is largest.
     int worst_node() const { return worst_; }
     int blocking_pair() const { return blocking_; }         ///< -1: none limited the last step
-    int blocking_triangle() const { return blocking_triangle_; }
 
     int points() const override { return int(node_mass_.size()); }
     void arrive(const Points& x) override;
@@ -64,6 +62,7 @@ public:
 private:
     void make_pattern();
     void renew_friction();
+    void weaken_friction(const Points& x);
 
     Sheet sheet_;
     Contact contact_;
@@ -75,10 +74,10 @@ private:
     BlockMatrix matrix_;
     bool matrix_made_ = false;
     std::vector<StrainLimit> limits_; ///< as the fabrics have them
-    int widened_ = 0;
-    int arrivals_ = 0;               ///< since friction and limits were renewed
+    int arrivals_ = 0;               ///< since the cloth was tied to its place
+    bool near_rest_ = false;
     double residual_ = 0, renewed_at_ = 0;
-    int worst_ = 0, blocking_ = -1, blocking_triangle_ = -1;
+    int worst_ = 0, blocking_ = -1;
 };
 
 } // namespace toile

@@ -26,9 +26,10 @@ constexpr double contact_share = 0.06;   // of the edge length: contact distance
 constexpr double barrier_stiffness = 1e6; // Pa/m for a cloth of 0.15 kg/m2 at a distance of half a millimetre
 constexpr double floor_share = 0.1;      // of the contact distance that is never entered
 constexpr double grow_distance = 2e-3;   // m, contact distance while the body grows back
-constexpr int tighten_rounds = 10;
+constexpr double soft_limit = 0.7;    // turn of the strain limits' barrier that cloth can meet from beyond them
 constexpr double slid = 0.10;            // m below its place at which a held edge counts as slid off
-constexpr double coarse_residual = 1;    // to which levels that are not the last are settled
+constexpr double coarse_compression = 0.2; // of the fabric's, on levels that are not the last
+constexpr double coarse_residual = 10;    // to which levels that are not the last are settled
 
 // Labels of edges that carry a garment by themselves and hold it up only once friction does: in GarmentCode files
 // the waist of skirts and trousers, and the top of strapless tops. Shoulders carry what hangs from collars.
@@ -126,6 +127,14 @@ struct Run {
         result.levels.back().iterations += r.iterations;
         result.levels.back().factorisations += r.factorisations;
         return r;
+    }
+
+    /// A coarse mesh cannot fold as finely as the cloth would and must be let shrink instead, or it locks.
+    PanelFabrics level_fabrics() const {
+        PanelFabrics level = fabrics;
+        if (!last_level())
+            for (Fabric& f : level) f.compression *= coarse_compression;
+        return level;
     }
 
     ContactOptions contact_options() const {
@@ -336,7 +345,7 @@ void note_where(Run& run, const ClothProblem& problem, const SettleResult& r) {
 void settle_level(Run& run) {
     const auto start = Clock::now();
     const ContactOptions contact = run.contact_options();
-    ClothProblem problem(run.garment, run.fabrics, run.body, contact);
+    ClothProblem problem(run.garment, run.level_fabrics(), run.body, contact);
     problem.gravity = run.options.gravity;
     const double weight = run.options.gravity * total(problem.node_mass());
     Cholesky factor;
@@ -373,30 +382,31 @@ void settle_level(Run& run) {
         o.tolerance = run.last_level() && last_pass ? run.options.tolerance : coarse_residual;
         o.max_iterations = pass.iterations;
         o.exact_below = last_pass ? 20 : 0;
-        if (pass.softness == 1) problem.limit_strain(run.x);
+        if (pass.softness == 1) problem.limit_strain(soft_limit);
         r = run.settle_some(problem, run.x, factor, o);
-        // Limits that had to be widened are drawn in from where the cloth has come to rest, again and again.
-        for (int k = 0; last_pass && problem.widened() > 0 && k < tighten_rounds && !run.stopped; ++k) {
-            problem.limit_strain(run.x);
-            o.max_iterations = 40;
+        // Limits are hardened only where the cloth needs it.
+        for (double room = 0.1; last_pass && run.last_level() && room > 1e-3 && !run.stopped; room /= 3) {
+            if (problem.beyond_limits(run.x).empty()) break;
+            problem.limit_strain(1 - room);
             r = run.settle_some(problem, run.x, factor, o);
         }
     }
     run.result.residual = r.residual;
     run.result.barrier = {contact.body.distance, contact.body.stiffness};
     if (run.last_level()) {
+        const int beyond = int(problem.beyond_limits(run.x).size());
         if (run.stopped || run.iterations_left <= 0)
             run.result.status = DrapeStatus::limit;
         else if (!run.grown)
             run.result.status = DrapeStatus::too_small;
-        else if (r.end == SettleEnd::settled && problem.widened() == 0)
+        else if (r.end == SettleEnd::settled && beyond == 0)
             run.result.status = DrapeStatus::converged;
         else
             run.result.status = DrapeStatus::stalled;
         if (run.result.status != DrapeStatus::converged) note_where(run, problem, r);
-        if (problem.widened() > 0)
+        if (beyond > 0)
             run.result.warnings.push_back(
-                text("%d triangles are stretched beyond their fabric's limit", problem.widened()));
+                text("%d triangles are stretched beyond their fabric's limit", beyond));
     }
     const double s = std::chrono::duration<double>(Clock::now() - start).count();
     run.result.levels.back().seconds += s;

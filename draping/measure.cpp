@@ -16,6 +16,8 @@ namespace toile {
 
 namespace {
 
+constexpr double most_compression = 0.02; // beyond it cloth counts as compressed
+
 // ---- strain
 
 struct Sample {
@@ -207,7 +209,7 @@ void nearest_edges(const TriMesh& a, const TriMesh& b, double& squared) {
 StrainMeasure measure_strain(const Garment& garment, const Points& x, const PanelFabrics& fabrics) {
     StrainMeasure measure;
     std::vector<Sample> warp, weft, principal, shear;
-    double off_seams = 0, compressed = 0;
+    double off_seams = 0, compressed = 0, narrowed = 0;
     for (int t = 0; t < int(garment.triangles.size()); ++t) {
         const Mat2& rest = garment.rest.edges[t];
         const double area = 0.5 * std::abs(rest.determinant());
@@ -223,13 +225,15 @@ StrainMeasure measure_strain(const Garment& garment, const Points& x, const Pane
         shear.push_back({s.shear, area});
         if (eased) continue;
         off_seams += area;
-        if (s.smaller < -0.02) compressed += area;
+        if (std::min(s.warp, s.weft) < -most_compression) compressed += area;
+        if (s.smaller < -most_compression) narrowed += area;
     }
     measure.warp = spread_of(std::move(warp));
     measure.weft = spread_of(std::move(weft));
     measure.principal = spread_of(std::move(principal));
     measure.shear = spread_of(std::move(shear));
     measure.compressed_area = off_seams > 0 ? compressed / off_seams : 0;
+    measure.narrowed_area = off_seams > 0 ? narrowed / off_seams : 0;
     for (const Fabric& f : fabrics) {
         measure.limit_warp = tighter(f.limit_warp, measure.limit_warp);
         measure.limit_weft = tighter(f.limit_weft, measure.limit_weft);

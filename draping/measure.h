@@ -23,8 +23,11 @@ struct StrainMeasure {
     Spread warp, weft, principal, shear;
     /// The tightest of the fabrics used; 0 when none has one.
     double limit_warp = 0, limit_weft = 0, limit_shear = 0;
-    /// Share of the area off eased seams whose smaller principal stretch is below 0.98.
+    /// Share of the area off eased seams that is compressed: warp or weft shorter than 98 %. Shear is another
+    /// thing, which woven cloth does without shortening a yarn.
     double compressed_area = 0;
+    /// Share of that area whose smaller principal stretch is below 98 %: by compression or by a shear of more than 2.3 degrees.
+    double narrowed_area = 0;
 };
 
 /// Largest and mean |2 pi - sum of angles| (rad) over inner nodes off seams and darts.

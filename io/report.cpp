@@ -36,7 +36,8 @@ Json strain(const StrainMeasure& m) {
             {"weft", limited(m.weft, m.limit_weft)},
             {"principal", spread(m.principal)},
             {"shear", limited(m.shear, m.limit_shear)},
-            {"compressed_area", m.compressed_area}};
+            {"compressed_area", m.compressed_area},
+            {"narrowed_area", m.narrowed_area}};
 }
 
 Json ease_at(const DrapeResult& r, const TriMesh& body, double height) {

@@ -53,7 +53,8 @@ Json to_json(const Inspection& i) {
                       {"weft", spread(s.weft, s.limit_weft)},
                       {"principal", spread(s.principal, 0)},
                       {"shear", spread(s.shear, s.limit_shear)},
-                      {"compressed_area", s.compressed_area}};
+                      {"compressed_area", s.compressed_area},
+                      {"narrowed_area", s.narrowed_area}};
     json["strain"]["principal"].erase("limit");
     json["developability"] = {{"angle_defect_mean", i.developability.angle_defect_mean},
                               {"angle_defect_max", i.developability.angle_defect_max}};

@@ -3,6 +3,7 @@
 
 #include <cblas.h>
 #include <cholmod.h>
+#include <omp.h>
 
 #include <stdexcept>
 
@@ -16,6 +17,7 @@ struct Cholesky::Impl {
 
     Impl() {
         openblas_set_num_threads(1);
+        omp_set_max_active_levels(0); // CHOLMOD's loops are too short for the four threads it asks for
         cholmod_start(&common);
         common.supernodal = CHOLMOD_SUPERNODAL;
         common.print = 0;

@@ -32,23 +32,28 @@ Metric metric_of(const StrainLimit& limit, const Points& x) {
     return m;
 }
 
-// Value and two derivatives of -s^2 log(1 - s), zero for s <= 0.
+// Value and two derivatives of -s^2 log(1 - s), zero for s <= 0, and of its quadratic continuation beyond
+// `turn`.
 struct Barrier {
     double value = 0, slope = 0, bend = 0;
 };
 
-Barrier barrier(double s) {
+Barrier barrier(double s, double turn) {
     if (s <= 0) return {};
-    if (s >= 1) return {never, never, never};
-    const double log = std::log1p(-s), gap = 1 - s;
-    return {-s * s * log, -2 * s * log + s * s / gap, -2 * log + 4 * s / gap + s * s / (gap * gap)};
+    const double at = std::min(s, turn), log = std::log1p(-at), gap = 1 - at;
+    Barrier b{-at * at * log, -2 * at * log + at * at / gap,
+              -2 * log + 4 * at / gap + at * at / (gap * gap)};
+    const double beyond = s - at;
+    b.value += beyond * (b.slope + 0.5 * beyond * b.bend);
+    b.slope += beyond * b.bend;
+    return b;
 }
 
 // A barrier of the yarn's Green strain, as a function of |F|^2; `largest` is |F|^2 at the limit.
-Barrier yarn_barrier(double squared, double largest, double stiffness) {
+Barrier yarn_barrier(double squared, double largest, double stiffness, double turn) {
     if (largest == never) return {};
     const double range = (1 - onset) * (largest - 1);
-    Barrier b = barrier((squared - 1 - onset * (largest - 1)) / range);
+    Barrier b = barrier((squared - 1 - onset * (largest - 1)) / range, turn);
     return {stiffness * b.value, stiffness / range * b.slope, stiffness / (range * range) * b.bend};
 }
 
@@ -91,14 +96,14 @@ void add(MetricEnergy& energy, const Barrier& b, const Vec3& slope, const Mat3& 
 
 MetricEnergy energy_of(const StrainLimit& limit, const Vec3& c) {
     MetricEnergy energy;
-    add(energy, yarn_barrier(c[0], limit.weft, limit.weft_stiffness), Vec3::UnitX(), Mat3::Zero());
-    add(energy, yarn_barrier(c[1], limit.warp, limit.warp_stiffness), Vec3::UnitY(), Mat3::Zero());
+    add(energy, yarn_barrier(c[0], limit.weft, limit.weft_stiffness, limit.turn), Vec3::UnitX(), Mat3::Zero());
+    add(energy, yarn_barrier(c[1], limit.warp, limit.warp_stiffness, limit.turn), Vec3::UnitY(), Mat3::Zero());
     const double squared = c[2] * c[2] / (c[0] * c[1] + tiny), onset_squared = onset * onset;
     if (limit.shear == never || squared <= onset_squared * limit.shear) return energy;
     // As for the yarns, but from 60 % of the sine, which is 36 % of its square.
     const Shear shear = shear_of(c);
     const double range = (1 - onset_squared) * limit.shear;
-    const Barrier b = barrier((shear.value - onset_squared * limit.shear) / range);
+    const Barrier b = barrier((shear.value - onset_squared * limit.shear) / range, limit.turn);
     const double k = limit.shear_stiffness;
     add(energy, {k * b.value, k / range * b.slope, k / (range * range) * b.bend}, shear.slope, shear.bend);
     return energy;
@@ -115,91 +120,6 @@ Mat2 stress_of(const Vec3& slope) {
     Mat2 stress;
     stress << 2 * slope[0], slope[2], slope[2], 2 * slope[1];
     return stress;
-}
-
-// Smallest root in [0, end] of the polynomial sum_i p[i] a^i, or infinity; 0 when it is not negative at 0.
-// Between the roots of its derivative a polynomial is monotonic, so bisection there cannot miss one; the
-// bracket's lower end is returned, where the polynomial is still negative.
-double first_root(const std::vector<double>& p, double end) {
-    const int degree = int(p.size()) - 1;
-    const auto value = [&](double a) {
-        double v = 0;
-        for (int i = degree; i >= 0; --i)
-            v = v * a + p[i];
-        return v;
-    };
-    if (p[0] >= 0) return 0;
-    std::vector<double> knots{0};
-    // All critical points in [0, end], from those of the derivatives, lowest degree first.
-    for (int d = degree - 1; d >= 1; --d) {
-        std::vector<double> q(p);
-        for (int n = 0; n < d; ++n) {
-            for (std::size_t i = 1; i < q.size(); ++i)
-                q[i - 1] = double(i) * q[i];
-            q.pop_back();
-        }
-        const auto derivative = [&](double a) {
-            double v = 0;
-            for (int i = int(q.size()) - 1; i >= 0; --i)
-                v = v * a + q[i];
-            return v;
-        };
-        std::vector<double> next{0}, ends(knots);
-        ends.push_back(end);
-        for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-            double low = ends[i], high = ends[i + 1];
-            if ((derivative(low) > 0) == (derivative(high) > 0)) continue;
-            for (int n = 0; n < 60; ++n) {
-                const double middle = (low + high) / 2;
-                ((derivative(middle) > 0) == (derivative(low) > 0) ? low : high) = middle;
-            }
-            next.push_back(high);
-        }
-        knots = next;
-    }
-    knots.push_back(end);
-    for (std::size_t i = 0; i + 1 < knots.size(); ++i) {
-        double low = knots[i], high = knots[i + 1];
-        if (value(high) < 0) continue;
-        for (int n = 0; n < 60; ++n) {
-            const double middle = (low + high) / 2;
-            (value(middle) < 0 ? low : high) = middle;
-        }
-        return low;
-    }
-    return never;
-}
-
-std::vector<double> times(const Vec3& a, const Vec3& b) {
-    return {a[0] * b[0], a[0] * b[1] + a[1] * b[0], a[0] * b[2] + a[1] * b[1] + a[2] * b[0],
-            a[1] * b[2] + a[2] * b[1], a[2] * b[2]};
-}
-
-// Largest step in [0, 1] of one triangle.
-double step_of(const StrainLimit& limit, const Points& x, const Points& direction) {
-    const Eigen::Matrix<double, 3, 2> f = metric_of(limit, x).yarns, d = metric_of(limit, direction).yarns;
-    // Polynomials in the step of |F_weft|^2, |F_warp|^2 and F_weft . F_warp.
-    const Vec3 weft(f.col(0).squaredNorm(), 2 * f.col(0).dot(d.col(0)), d.col(0).squaredNorm());
-    const Vec3 warp(f.col(1).squaredNorm(), 2 * f.col(1).dot(d.col(1)), d.col(1).squaredNorm());
-    const Vec3 both(f.col(0).dot(f.col(1)), f.col(0).dot(d.col(1)) + f.col(1).dot(d.col(0)),
-                    d.col(0).dot(d.col(1)));
-    double step = 1;
-    const auto yarn = [&](const Vec3& p, double largest) {
-        if (largest < never && p[0] + std::max(p[1], 0.0) + p[2] >= largest)
-            step = std::min(step, first_root({p[0] - largest, p[1], p[2]}, 1));
-    };
-    yarn(weft, limit.weft);
-    yarn(warp, limit.warp);
-    const double least = (weft[0] + std::min(weft[1], 0.0)) * (warp[0] + std::min(warp[1], 0.0));
-    const double most = both.cwiseAbs().sum();
-    if (limit.shear < never && most * most >= limit.shear * (std::max(least, 0.0) + tiny)) {
-        std::vector<double> p = times(both, both), product = times(weft, warp);
-        for (int i = 0; i < 5; ++i)
-            p[i] -= limit.shear * product[i];
-        p[0] -= limit.shear * tiny;
-        step = std::min(step, first_root(p, 1));
-    }
-    return step;
 }
 
 double squared_limit(double stretch) {
@@ -235,20 +155,15 @@ std::vector<StrainLimit> make_strain_limits(const Garment& garment, const std::v
     return limits;
 }
 
-int widen_strain_limits(std::vector<StrainLimit>& limits, const Points& x, double margin) {
-    int changed = 0;
-    for (StrainLimit& limit : limits) {
-        const Vec3 c = metric_of(limit, x).c;
-        const auto widened = [&](double now, double largest) {
-            return std::isfinite(largest) && now > (1 - margin) * largest ? now / (1 - margin) : largest;
-        };
-        const StrainLimit before = limit;
-        limit.weft = 1 + widened(c[0] - 1, limit.weft - 1);
-        limit.warp = 1 + widened(c[1] - 1, limit.warp - 1);
-        limit.shear = widened(c[2] * c[2] / (c[0] * c[1] + tiny), limit.shear);
-        changed += limit.weft != before.weft || limit.warp != before.warp || limit.shear != before.shear;
+std::vector<int> beyond_strain_limits(const std::vector<StrainLimit>& limits, const Points& x) {
+    std::vector<int> beyond;
+    for (int t = 0; t < int(limits.size()); ++t) {
+        const Vec3 c = metric_of(limits[t], x).c;
+        if (c[0] >= limits[t].weft || c[1] >= limits[t].warp ||
+            c[2] * c[2] >= limits[t].shear * (c[0] * c[1] + tiny))
+            beyond.push_back(t);
     }
-    return changed;
+    return beyond;
 }
 
 double strain_limit_value(const StrainLimit& limit, const Points& x) {
@@ -298,19 +213,6 @@ bool strain_limit_hessian(const StrainLimit& limit, const Points& x, HessianKind
             for (int i = 0; i < 3; ++i)
                 hessian(3 * a + i, 3 * b + i) += geometric(a, b);
     return true;
-}
-
-double strain_limit_step(const std::vector<StrainLimit>& limits, const Points& x, const Points& direction,
-                         int* where) {
-    std::vector<double> steps(limits.size());
-    parallel_for(int(limits.size()), chunk, [&](int begin, int end) {
-        for (int t = begin; t < end; ++t)
-            steps[t] = step_of(limits[t], x, direction);
-    });
-    const auto least = std::min_element(steps.begin(), steps.end());
-    const bool stopped = least != steps.end() && *least < 1;
-    if (where) *where = stopped ? int(least - steps.begin()) : -1;
-    return stopped ? *least : 1;
 }
 
 } // namespace toile

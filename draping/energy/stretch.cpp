@@ -112,11 +112,6 @@ Vec3 tensile(const Vec3& stress) {
     return {kept(0, 0), kept(1, 1), kept(0, 1)};
 }
 
-void add_scalar(StretchHessian& hessian, int a, int b, double value) {
-    for (int i = 0; i < 3; ++i)
-        hessian(3 * a + i, 3 * b + i) += value;
-}
-
 } // namespace
 
 StretchResponse stretch_response(const StretchElement& element, const Vec3& strain) {
@@ -183,40 +178,53 @@ void stretch_hessian(const StretchElement& element, const Points& x, HessianKind
     const StretchResponse response = stretch_response(element, shape.strain);
     const int m = element.patch.count;
     const bool project = kind == HessianKind::projected;
+    const auto forces = [&](const Vec3& stress) {
+        return Vec3(element.area * element.to_strain.transpose() * stress);
+    };
 
-    Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3 * Patch::max_nodes> lengths(3, 3 * m);
-    for (int a = 0; a < m; ++a)
-        for (int k = 0; k < 3; ++k)
-            lengths.block<1, 3>(k, 3 * a) = length_gradient(element, shape, k, a).transpose();
-    const Mat3 tangent = element.area * element.to_strain.transpose() * response.tangent * element.to_strain;
-    hessian.noalias() = lengths.transpose() * (tangent * lengths);
-
-    const Vec3 chord =
-        element.area * element.to_strain.transpose() * (project ? tensile(response.stress) : response.stress);
+    // What multiplies the identity: chords by corner, arcs by their curve rows.
+    const Vec3 chord = forces(project ? tensile(response.stress) : response.stress);
+    const Vec3 force = forces(response.stress);
+    Vec3 arc = force.cwiseProduct(Vec3(shape.arc_slope[0], shape.arc_slope[1], shape.arc_slope[2])) / 12;
+    if (project) arc = arc.cwiseMax(0);
+    Mat3 corner = Mat3::Zero();
     for (int k = 0; k < 3; ++k) {
         const int a = edge_start(k), b = edge_end(k);
-        add_scalar(hessian, a, a, chord[k]);
-        add_scalar(hessian, b, b, chord[k]);
-        add_scalar(hessian, a, b, -chord[k]);
-        add_scalar(hessian, b, a, -chord[k]);
+        corner(a, a) += chord[k];
+        corner(b, b) += chord[k];
+        corner(a, b) -= chord[k];
+        corner(b, a) -= chord[k];
     }
-    const Vec3 force = element.area * element.to_strain.transpose() * response.stress;
-    Vec3 arc = force / 12;
-    for (int k = 0; k < 3; ++k)
-        arc[k] *= shape.arc_slope[k];
-    if (project) arc = arc.cwiseMax(0);
-    const auto curve = element.patch.curve.leftCols(m);
-    for (int a = 0; a < m; ++a)
-        for (int b = 0; b < m; ++b)
-            add_scalar(hessian, a, b, curve.col(a).cwiseProduct(arc).dot(curve.col(b)));
+
+    // Derivatives of the three lengths by node, and with them the products tangent x derivative; the bending of
+    // what arcs add is one more term in the turning of each edge.
+    const Mat3 tangent = element.area * element.to_strain.transpose() * response.tangent * element.to_strain;
+    std::array<Mat3, Patch::max_nodes> length, pull; // column k: edge k
+    Vec3 bend;
     for (int k = 0; k < 3; ++k) {
-        const double bend = force[k] * shape.arc_bend[k] / 144;
-        if (project && bend < 0) continue;
-        const Mat3 outer = bend * shape.turning[k] * shape.turning[k].transpose();
-        for (int a = 0; a < m; ++a)
-            for (int b = 0; b < m; ++b)
-                hessian.block<3, 3>(3 * a, 3 * b) += curve(k, a) * curve(k, b) * outer;
+        bend[k] = force[k] * shape.arc_bend[k] / 144;
+        if (project) bend[k] = std::max(bend[k], 0.0);
     }
+    const bool bends = bend != Vec3::Zero();
+    for (int a = 0; a < m; ++a) {
+        for (int k = 0; k < 3; ++k) length[a].col(k) = length_gradient(element, shape, k, a);
+        pull[a] = length[a] * tangent;
+    }
+    hessian.resize(3 * m, 3 * m);
+    const auto& curve = element.patch.curve;
+    for (int a = 0; a < m; ++a)
+        for (int b = 0; b <= a; ++b) {
+            Mat3 block = pull[a] * length[b].transpose();
+            double identity = 0;
+            for (int k = 0; k < 3; ++k) identity += arc[k] * curve(k, a) * curve(k, b);
+            if (a < 3) identity += corner(a, b);
+            block.diagonal().array() += identity;
+            if (bends)
+                for (int k = 0; k < 3; ++k)
+                    block += bend[k] * curve(k, a) * curve(k, b) * shape.turning[k] * shape.turning[k].transpose();
+            hessian.block<3, 3>(3 * a, 3 * b) = block;
+            if (b < a) hessian.block<3, 3>(3 * b, 3 * a) = block.transpose();
+        }
 }
 
 double stretch_value(const std::vector<StretchElement>& elements, const Points& x) {

@@ -129,7 +129,6 @@ Fabric leather() {
     f.bend_weft = 102 * micro;
     f.bend_twist = 40 * micro;
     f.bend_poisson = 0.3;
-    f.compression = 0.5;
     f.thickness = 0.8 * milli;
     f.friction = 0.45;
     f.limit_warp = f.limit_weft = 0.05;

@@ -24,7 +24,7 @@ struct Fabric {
     double bend_weft = 0;      ///< N m
     double bend_twist = 0;     ///< N m
     double bend_poisson = 0;   ///< coupling of the two curvatures, [0, 0.5)
-    double compression = 0.1;  ///< stiffness under compression, as a share of that under tension, (0, 1]
+    double compression = 0.5;  ///< stiffness under compression, as a share of that under tension, (0, 1]
     double thickness = 0;      ///< m
     double friction = 0;       ///< Coulomb coefficient on the body
     double limit_warp = 0;     ///< largest stretch, e.g. 0.01

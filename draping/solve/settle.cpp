@@ -14,6 +14,9 @@ constexpr int direct_below = 1500; // points: a factorisation is cheaper than ke
 constexpr int cg_patience = 12;    // iterations after which a kept factor is too old
 constexpr double cg_tolerance = 0.1;
 constexpr int tail_cg_limit = 60;
+constexpr double tail_patience = 10;
+constexpr double first_radius = 2; // steps of the projected matrix, which is too stiff by such a factor
+constexpr int old_factor_cg = 25;  // CG iterations after which the factor is renewed
 constexpr double tail_time_step = 1; // s: before that the state is still travelling, however small the forces
 
 double longest(const VectorXd& dx) {
@@ -125,7 +128,7 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
     double h = options.time_step;
     double radius = 0; // of the trust region, 0 while not in the tail
     int failures = 0;
-    bool still = false;
+    bool still = false, tail = false, stale = false;
 
     problem.arrive(x);
     for (;; ++result.iterations) {
@@ -145,41 +148,48 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
             return result;
         }
 
-        const bool tail = result.residual < options.exact_below && run.factored && h > tail_time_step;
+        // Once in the tail a passing rise of the residual is no reason to leave it.
+        const double exact_below = (tail ? tail_patience : 1) * options.exact_below;
+        tail = result.residual < exact_below && run.factored && h > tail_time_step;
         if (!tail) radius = 0;
         bool pattern_changed = false, boundary = false;
         int cg = 0;
-        BlockMatrix& m = problem.hessian(x, tail, pattern_changed);
-        if (!tail || pattern_changed || radius == 0) {
-            if (tail) { // the factor of the projected matrix is the norm of the trust region
-                problem.hessian(x, false, pattern_changed);
-                radius = 0;
-            }
-            shift = problem.mass() / (h * h);
-            m.add_to_diagonal(shift);
+        shift = problem.mass() / (h * h);
+        const auto prepared = [&](bool exact) -> BlockMatrix& {
+            BlockMatrix& m = problem.hessian(x, exact, pattern_changed);
+            m.add_to_diagonal(exact ? VectorXd(problem.mass() / 100.0) : shift);
             m.pin(problem.pinned());
-            run.analyse_if(pattern_changed, m);
-            const bool good = tail ? run.factorise(m) : run.direction(m, g, dx);
-            if (!good) {
-                h *= 0.25;
-                if (++failures > 12) {
-                    result.end = SettleEnd::stalled;
-                    return result;
+            return m;
+        };
+        bool solved = true;
+        if (tail) {
+            BlockMatrix* m = radius > 0 && !stale ? &prepared(true) : nullptr;
+            if (!m || pattern_changed) { // the factor of the projected matrix is the norm of the trust region
+                m = &prepared(false);
+                run.analyse_if(pattern_changed, *m);
+                solved = run.factorise(*m);
+                if (solved && radius == 0) {
+                    factor.solve(-g, dx);
+                    radius = first_radius * std::sqrt(-g.dot(dx));
                 }
-                continue;
+                m = &prepared(true);
             }
-            if (tail) {
-                factor.solve(-g, dx);
-                radius = std::sqrt(-g.dot(dx));
-                BlockMatrix& exact = problem.hessian(x, true, pattern_changed);
-                exact.add_to_diagonal(problem.mass() / 100.0);
-                exact.pin(problem.pinned());
+            if (solved)
                 boundary = run.trust_region_direction(g, radius, std::min(0.1, std::sqrt(result.residual)), dx, cg);
-            }
+            stale = cg > old_factor_cg;
         } else {
-            m.add_to_diagonal(problem.mass() / 100.0);
-            m.pin(problem.pinned());
-            boundary = run.trust_region_direction(g, radius, std::min(0.1, std::sqrt(result.residual)), dx, cg);
+            BlockMatrix& m = prepared(false);
+            run.analyse_if(pattern_changed, m);
+            solved = run.direction(m, g, dx);
+        }
+        if (!solved) {
+            h *= 0.25;
+            radius = 0;
+            if (++failures > 12) {
+                result.end = SettleEnd::stalled;
+                return result;
+            }
+            continue;
         }
 
         const double reach = longest(dx);
@@ -212,7 +222,6 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
                 radius *= 0.4;
             else if (ratio > 0.75 && boundary)
                 radius *= 2.5;
-            if (cg > 40) radius = 0; // the factor is too old: renew it
         } else if (accepted && t == feasible && actual > 0.5 * predicted) {
             h *= 2;
         } else if (!accepted || actual < 0.1 * predicted) {

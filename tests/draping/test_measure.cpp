@@ -118,6 +118,8 @@ TEST_CASE("shear is the angle by which warp and weft close, and a mirrored sheet
     // Simple shear by rotation of the warp: principal stretches sqrt(1 +- sin).
     CHECK(s.principal.max == Approx(std::sqrt(1 + std::sin(angle)) - 1));
     CHECK(s.principal.min == Approx(std::sqrt(1 - std::sin(angle)) - 1));
+    CHECK(s.compressed_area == 0);
+    CHECK(s.narrowed_area == Approx(1));
 
     const Points mirrored = mapped([](const Vec2& p) { return Vec3(-p[0], p[1], 0); });
     CHECK(measure_strain(test::garment_of(sheet), mirrored, {}).principal.p99 < 1e-12);

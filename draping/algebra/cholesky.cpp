@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/algebra/cholesky.h"
 
+#include "draping/algebra/supernodes.h"
+
 #include <cblas.h>
 #include <cholmod.h>
 #include <omp.h>
 
+#include <optional>
 #include <stdexcept>
 
 namespace toile {
@@ -13,6 +16,7 @@ struct Cholesky::Impl {
     cholmod_common common;
     cholmod_factor* factor = nullptr;
     std::vector<int> order; ///< of points
+    std::optional<SupernodalSolver> supernodes; ///< of the present factor, once asked for
     cholmod_dense *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
 
     Impl() {
@@ -90,6 +94,7 @@ void Cholesky::analyse(const BlockMatrix& a, bool keep_order) {
 
 bool Cholesky::factorise(const BlockMatrix& a) {
     Impl& m = *impl_;
+    m.supernodes.reset();
     cholmod_sparse s = Impl::view(a);
     cholmod_factorize(&s, m.factor, &m.common);
     if (m.common.status == CHOLMOD_OUT_OF_MEMORY || m.common.status == CHOLMOD_TOO_LARGE)
@@ -107,6 +112,24 @@ void Cholesky::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
     right.dtype = CHOLMOD_DOUBLE;
     cholmod_solve2(CHOLMOD_A, m.factor, &right, nullptr, &m.solution, nullptr, &m.work_y, &m.work_e, &m.common);
     x = Eigen::Map<Eigen::VectorXd>(static_cast<double*>(m.solution->x), b.size());
+}
+
+void Cholesky::precondition(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+    Impl& m = *impl_;
+    if (!m.supernodes) {
+        const cholmod_factor& f = *m.factor;
+        SupernodalFactor view;
+        view.rows = int(f.n);
+        view.count = int(f.nsuper);
+        view.first = static_cast<const int*>(f.super);
+        view.row_begin = static_cast<const int*>(f.pi);
+        view.value_begin = static_cast<const int*>(f.px);
+        view.row = static_cast<const int*>(f.s);
+        view.value = static_cast<const double*>(f.x);
+        view.order = static_cast<const int*>(f.Perm);
+        m.supernodes.emplace(view);
+    }
+    m.supernodes->solve(b, x);
 }
 
 std::string blas_name() { return std::string(openblas_get_config()) + ", core " + openblas_get_corename(); }

@@ -27,6 +27,9 @@ public:
     /// x = A^-1 b by the last factorisation, which must have succeeded.
     void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
 
+    /// The same to about six digits, several times faster on large matrices: for a preconditioner.
+    void precondition(const Eigen::VectorXd& b, Eigen::VectorXd& x);
+
 private:
     struct Impl;
     std::unique_ptr<Impl> impl_;

@@ -52,7 +52,7 @@ struct Run {
     bool solve_with_kept(const BlockMatrix& h, const VectorXd& g, VectorXd& dx) {
         VectorXd r = -g, z, p, hp;
         dx.setZero(g.size());
-        factor.solve(r, z);
+        factor.precondition(r, z);
         p = z;
         double rz = r.dot(z);
         const double stop = cg_tolerance * cg_tolerance * rz;
@@ -64,7 +64,7 @@ struct Run {
             const double a = rz / curvature;
             dx += a * p;
             r -= a * hp;
-            factor.solve(r, z);
+            factor.precondition(r, z);
             const double next = r.dot(z);
             if (next <= stop) return true;
             p = z + (next / rz) * p;
@@ -86,7 +86,7 @@ struct Run {
                                 int& iterations) {
         d.setZero(g.size());
         VectorXd r = -g, z, p, hp;
-        factor.solve(r, z);
+        factor.precondition(r, z);
         p = z;
         double rz = r.dot(z);
         const double stop = tolerance * tolerance * rz;
@@ -106,7 +106,7 @@ struct Run {
             d += a * p;
             dd += 2 * a * dp + a * a * pp;
             r -= a * hp;
-            factor.solve(r, z);
+            factor.precondition(r, z);
             const double next = r.dot(z);
             if (next <= stop) return false;
             const double beta = next / rz;

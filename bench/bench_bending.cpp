@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The bake-off behind docs/bending.md: bending elements against known answers and against each other.
-// bench_bending [test ...] with tests out of: plate cylinder twist cantilever lateral sheet cost. Default:
+// bench_bending [test ...] with tests out of: plate cylinder twist cantilever lateral cost sheet. Default:
 // all.
 
 #include "bench/bending/candidates.h"
+#include "tests/support/hanging_sheet.h"
 #include "tests/support/plates.h"
 
 #include <Eigen/Geometry>
@@ -220,6 +221,27 @@ void cost(const Candidate& candidate) {
                 c.entries / 1e6, c.seconds);
 }
 
+// The element that was kept, by the solver of drapes: how far a sheet that hangs by two corners moves when
+// its membrane becomes a hundred times stiffer.
+void hanging_sheet() {
+    for (double edge : {0.02, 0.01})
+        for (int seed = 1; seed <= 3; ++seed) {
+            const auto start = std::chrono::steady_clock::now();
+            const std::vector<HungSheet> hung = hang_sheet(edge, seed, {1e3, 1e4, 1e5});
+            const HungSheet &soft = hung[0], &stiff = hung[2];
+            std::printf("  %2.0f mm, mesh %d: drop %.1f mm, farthest %.1f mm (%.1f %%); sag %.2f, %.2f, %.2f "
+                        "mm (%+.1f %%), "
+                        "%d, %d, %d iterations, %.0f s%s\n",
+                        1e3 * edge, seed, 1e3 * soft.drop, 1e3 * farthest(soft, stiff),
+                        100 * farthest(soft, stiff) / soft.drop, 1e3 * soft.sag, 1e3 * hung[1].sag,
+                        1e3 * stiff.sag, 100 * (stiff.sag / soft.sag - 1), soft.iterations,
+                        hung[1].iterations, stiff.iterations,
+                        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
+                        soft.settled && hung[1].settled && stiff.settled ? "" : ", NOT ALL SETTLED");
+            std::fflush(stdout);
+        }
+}
+
 } // namespace
 
 int main(int count, char** words) {
@@ -241,5 +263,9 @@ int main(int count, char** words) {
         run("lateral", [&] { lateral(candidate); });
         run("cantilever", [&] { cantilever(candidate, 1); });
         run("cost", [&] { cost(candidate); });
+    }
+    if (asked("sheet")) {
+        std::printf("a sheet by two corners\n");
+        hanging_sheet();
     }
 }

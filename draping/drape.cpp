@@ -23,10 +23,11 @@ constexpr double seam_stiffness = 500;   // N/m per metre of seam while it is fa
 constexpr double seam_pull = 6;          // N per metre of seam: what a far open seam pulls with
 constexpr double weld_gap = 2e-4;        // m, below which a seam is closed for good
 constexpr double contact_share = 0.06;   // of the edge length: contact distance of levels that are not the last
-constexpr double barrier_stiffness = 1e6; // Pa/m for a cloth of 0.15 kg/m2 at a distance of half a millimetre
+constexpr double barrier_stiffness = 1e7; // Pa/m for a cloth of 0.15 kg/m2 at a distance of half a millimetre
 constexpr double floor_share = 0.1;      // of the contact distance that is never entered
 constexpr double grow_distance = 2e-3;   // m, contact distance while the body grows back
 constexpr double soft_limit = 0.7;    // turn of the strain limits' barrier that cloth can meet from beyond them
+constexpr double hard_limit = 0.9;    // and the one to end with, hardened further where the cloth needs it
 constexpr double slid = 0.10;            // m below its place at which a held edge counts as slid off
 constexpr double coarse_compression = 0.2; // of the fabric's, on levels that are not the last
 constexpr double coarse_residual = 10;    // to which levels that are not the last are settled
@@ -382,10 +383,10 @@ void settle_level(Run& run) {
         o.tolerance = run.last_level() && last_pass ? run.options.tolerance : coarse_residual;
         o.max_iterations = pass.iterations;
         o.exact_below = last_pass ? 20 : 0;
-        if (pass.softness == 1) problem.limit_strain(soft_limit);
+        if (pass.softness == 1 || !first) problem.limit_strain(last_pass && run.last_level() ? hard_limit : soft_limit);
         r = run.settle_some(problem, run.x, factor, o);
         // Limits are hardened only where the cloth needs it.
-        for (double room = 0.1; last_pass && run.last_level() && room > 1e-3 && !run.stopped; room /= 3) {
+        for (double room = (1 - hard_limit) / 3; last_pass && run.last_level() && room > 1e-3 && !run.stopped; room /= 3) {
             if (problem.beyond_limits(run.x).empty()) break;
             problem.limit_strain(1 - room);
             r = run.settle_some(problem, run.x, factor, o);

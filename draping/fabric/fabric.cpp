@@ -143,6 +143,7 @@ Fabric jersey() {
     f.name = "jersey";
     f.density = 0.17;
     f.stretch_warp = 120;
+    f.compression = 1;
     f.stretch_weft = 46;
     f.poisson = 0.3;
     f.shear = 37;
@@ -164,6 +165,7 @@ Fabric rib() {
     f.name = "rib";
     f.density = 0.276;
     f.stretch_warp = 150;
+    f.compression = 1;
     f.stretch_weft = 43;
     f.poisson = 0.3;
     f.shear = 60;

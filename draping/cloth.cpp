@@ -11,9 +11,6 @@ namespace toile {
 
 namespace {
 
-// The friction that is modelled stays a little below the limit, so that normal forces that still change by a few
-// per cent leave it within the limit.
-constexpr double friction_margin = 0.95;
 constexpr double friction_rest = 10; // residual below which friction only gives way
 constexpr int renew_every = 8;        // arrivals after which what is lagged is renewed in any case
 
@@ -82,13 +79,13 @@ ClothProblem::ClothProblem(const Garment& garment, const PanelFabrics& fabrics, 
 }
 
 void ClothProblem::rest_here(const Points& x, double coefficient) {
-    friction.coefficient = friction_margin * coefficient;
+    friction.coefficient = coefficient;
     friction.place = x;
     friction.normal.assign(x.size(), Vec3::UnitY());
     friction.force.assign(x.size(), 0.0);
     arrivals_ = 0;
     residual_ = renewed_at_ = std::numeric_limits<double>::infinity();
-    near_rest_ = false;
+    near_rest_ = rising_ = false;
 }
 
 void ClothProblem::limit_strain(double turn) {
@@ -96,16 +93,18 @@ void ClothProblem::limit_strain(double turn) {
     for (StrainLimit& limit : sheet_.limits) limit.turn = turn;
 }
 
-void ClothProblem::renew_friction() {
+void ClothProblem::renew_friction(const Points& x) {
     const Points force = contact_.body_forces(active_);
+    rising_ = false;
     for (int i = 0; i < points(); ++i) {
         const double now = force[i].norm();
         if (now == 0) {
             friction.force[i] = 0;
-        } else if (std::abs(now - friction.force[i]) > 0.3 * (1 - friction_margin) * now) {
+        } else if (std::abs(now - friction.force[i]) > friction_slack(friction, x, i) * now) {
             // Impacts of a single step must not become friction: the force follows a rise slowly.
             friction.force[i] = std::min(now, std::max(2 * friction.force[i], 9.81 * node_mass_[i]));
             friction.normal[i] = force[i] / now;
+            rising_ = rising_ || friction.force[i] < now;
         }
     }
 }
@@ -115,8 +114,10 @@ void ClothProblem::weaken_friction(const Points& x) {
     for (int i = 0; i < points(); ++i) {
         if (!(friction.force[i] > 0)) continue;
         const double now = force[i].norm();
-        if (friction_force(friction, x, i).norm() > friction.coefficient / friction_margin * now)
+        if (friction_force(friction, x, i).norm() > friction.coefficient * now)
             friction.force[i] = std::min(friction.force[i], now);
+        else if (about_to_slip(friction, x, i) && now - friction.force[i] > friction_slack(friction, x, i) * now)
+            friction.force[i] = now;
     }
 }
 
@@ -125,15 +126,16 @@ void ClothProblem::arrive(const Points& x) {
     active_ = contact_.active(x);
     if (friction.coefficient == 0) return;
     // Near rest friction only gives way where it is more than contact can answer: less than that is friction
-    // too, and forces that follow one another up and down would not come to rest.
+    // too, and forces that follow one another up and down would not come to rest. It grows only where a node would
+    // give way for want of it.
     near_rest_ = near_rest_ || residual_ < friction_rest;
     const bool renew = arrivals_ % renew_every == 0 || residual_ < 0.1 * renewed_at_;
     ++arrivals_;
-    if (near_rest_) {
+    if (near_rest_ && !rising_) {
         weaken_friction(x);
-    } else if (renew) {
+    } else if (renew || near_rest_) {
         renewed_at_ = residual_;
-        renew_friction();
+        renew_friction(x);
     }
 }
 
@@ -180,7 +182,7 @@ BlockMatrix& ClothProblem::hessian(const Points& x, bool exact, bool& pattern_ch
     sheet_hessian(sheet_, x, exact ? HessianKind::exact : HessianKind::projected, matrix_);
     add_hessian(stitches, x, matrix_);
     add_hessian(hooks, x, matrix_);
-    if (friction.coefficient > 0) add_hessian(friction, x, matrix_);
+    if (friction.coefficient > 0) add_hessian(friction, x, exact, matrix_);
     return matrix_;
 }
 
@@ -205,7 +207,7 @@ double ClothProblem::residual(const Points& x, const Eigen::VectorXd& g) {
         if (pinned_[i]) continue;
         double force = g.segment<3>(3 * i).norm();
         if (friction.coefficient > 0) {
-            const double limit = friction.coefficient / friction_margin * normal[i].norm();
+            const double limit = friction.coefficient * normal[i].norm();
             force += std::max(0.0, friction_force(friction, x, i).norm() - limit);
         }
         const double r = force / (9.81 * std::max(node_mass_[i], least_weight_));

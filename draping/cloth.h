@@ -61,7 +61,7 @@ public:
 
 private:
     void make_pattern();
-    void renew_friction();
+    void renew_friction(const Points& x);
     void weaken_friction(const Points& x);
 
     Sheet sheet_;
@@ -76,6 +76,7 @@ private:
     std::vector<StrainLimit> limits_; ///< as the fabrics have them
     int arrivals_ = 0;               ///< since the cloth was tied to its place
     bool near_rest_ = false;
+    bool rising_ = false;            ///< some node's friction has yet to catch up with its normal force
     double residual_ = 0, renewed_at_ = 0;
     int worst_ = 0, blocking_ = -1;
 };

@@ -1,16 +1,36 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/contact/friction.h"
 
+#include <algorithm>
+
 namespace toile {
 
 namespace {
 
-// f'(u) rises from 0 to 1 at u = slip: 2y - y^2, y = u / slip. f is its integral.
-double integral(double u, double slip) {
-    const double y = u / slip;
-    return y < 1 ? slip * (y * y - y * y * y / 3) : u - slip / 3;
+constexpr double hold = 0.998; // share of the limit at which a node gives way
+constexpr double slide = 0.95; // and which it keeps
+constexpr double give = 2;     // it does so over this many slips
+
+// The force as a share of the limit, over y = u / slip, its derivative and its integral: hold (2y - y^2) up to
+// y = 1, down from hold to slide by a smooth step, then slide.
+struct Law {
+    double force, slope, integral;
+};
+
+Law law(double y) {
+    if (y < 1) return {hold * y * (2 - y), 2 * hold * (1 - y), hold * y * y * (1 - y / 3)};
+    const double q = std::min((y - 1) / give, 1.0), lost = hold - slide;
+    const double held = 2 * hold / 3 + hold * (y - 1);
+    if (q < 1)
+        return {hold - lost * q * q * (3 - 2 * q), -6 * lost * q * (1 - q) / give,
+                held - lost * give * q * q * q * (1 - q / 2)};
+    return {slide, 0, held - lost * (give / 2 + y - 1 - give)};
 }
-double rise_over_length(double u, double slip) { return u < slip ? (2 - u / slip) / slip : 1 / u; }
+
+// The force per distance, finite at 0.
+double force_over_length(double u, double slip) {
+    return u < slip ? hold * (2 - u / slip) / slip : law(u / slip).force / u;
+}
 
 Vec3 along(const Friction& f, const Points& x, int i) {
     const Vec3 d = x[i] - f.place[i];
@@ -22,31 +42,42 @@ Vec3 along(const Friction& f, const Points& x, int i) {
 double value(const Friction& f, const Points& x) {
     double sum = 0;
     for (std::size_t i = 0; i < f.force.size(); ++i)
-        if (f.force[i] > 0) sum += f.coefficient * f.force[i] * integral(along(f, x, int(i)).norm(), f.slip);
+        if (f.force[i] > 0)
+            sum += f.coefficient * f.force[i] * f.slip * law(along(f, x, int(i)).norm() / f.slip).integral;
     return sum;
 }
 
 Vec3 friction_force(const Friction& f, const Points& x, int i) {
     if (f.force.empty() || !(f.force[i] > 0)) return Vec3::Zero();
     const Vec3 u = along(f, x, i);
-    return -f.coefficient * f.force[i] * rise_over_length(u.norm(), f.slip) * u;
+    return -f.coefficient * f.force[i] * force_over_length(u.norm(), f.slip) * u;
 }
 
 void add_gradient(const Friction& f, const Points& x, Eigen::VectorXd& g) {
     for (std::size_t i = 0; i < f.force.size(); ++i) g.segment<3>(3 * i) -= friction_force(f, x, int(i));
 }
 
-void add_hessian(const Friction& f, const Points& x, BlockMatrix& h) {
+double friction_slack(const Friction& f, const Points& x, int i) {
+    const double share = law(along(f, x, i).norm() / f.slip).force;
+    return 0.3 * std::min(1 - slide, 1 - share);
+}
+
+bool about_to_slip(const Friction& f, const Points& x, int i) {
+    return law(along(f, x, i).norm() / f.slip).force > slide;
+}
+
+void add_hessian(const Friction& f, const Points& x, bool exact, BlockMatrix& h) {
     for (std::size_t i = 0; i < f.force.size(); ++i) {
         if (!(f.force[i] > 0)) continue;
         const Vec3 u = along(f, x, int(i));
         const double length = u.norm(), most = f.coefficient * f.force[i];
         const Mat3 tangent = Mat3::Identity() - f.normal[i] * f.normal[i].transpose();
-        Mat3 m = rise_over_length(length, f.slip) * tangent;
-        if (length > 1e-9 * f.slip) { // along u the force rises slower: 2(1 - y)/slip, then not at all
+        const double across = force_over_length(length, f.slip);
+        Mat3 m = across * tangent;
+        if (length > 1e-9 * f.slip) {
             const Vec3 n = u / length;
-            const double ahead = length < f.slip ? 2 * (1 - length / f.slip) / f.slip : 0;
-            m += (ahead - rise_over_length(length, f.slip)) * n * n.transpose();
+            const double ahead = law(length / f.slip).slope / f.slip;
+            m += ((exact ? ahead : std::max(ahead, 0.0)) - across) * n * n.transpose();
         }
         h.add_diagonal(int(i), most * m);
     }

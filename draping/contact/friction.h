@@ -2,8 +2,10 @@
 #pragma once
 
 // Coulomb friction of the cloth on the body, for statics: every touching node is tied to the place where it
-// came to rest, by a force that grows with its distance along the body and ends at the friction limit. Normals
-// and normal forces are lagged. The tie does not creep: it has no velocity in it.
+// came to rest, by a force that grows with its distance along the body. It reaches the friction limit (but for
+// 0.2 %) at `slip`; a node that gives way keeps 95 % of it from three times that distance on. What slides is thus
+// within the limit by more than the lagged normals and normal forces are off, and what is at rest holds to the
+// angle of friction. The tie does not creep: it has no velocity in it.
 // The mollifier is that of Li et al.: Incremental Potential Contact, 2020.
 
 #include "draping/algebra/block_matrix.h"
@@ -12,7 +14,7 @@ namespace toile {
 
 struct Friction {
     double coefficient = 0;
-    double slip = 1e-4;       ///< m, distance from its place at which a node has the whole friction force
+    double slip = 1e-4;       ///< m, distance from its place at which a node has the largest friction force
     std::vector<Vec3> place;  ///< per node: where it came to rest
     std::vector<Vec3> normal; ///< per node, unit; lagged
     std::vector<double> force; ///< per node: lagged normal force, N; 0 where nothing touches
@@ -20,9 +22,17 @@ struct Friction {
 
 double value(const Friction& friction, const Points& x);
 void add_gradient(const Friction& friction, const Points& x, Eigen::VectorXd& g);
-void add_hessian(const Friction& friction, const Points& x, BlockMatrix& h);
+/// Exact, or positive semidefinite.
+void add_hessian(const Friction& friction, const Points& x, bool exact, BlockMatrix& h);
 
 /// Force of friction on node i at x, N.
 Vec3 friction_force(const Friction& friction, const Points& x, int i);
+
+/// By how much, as a share, the lagged normal force of node i may be off before friction has to be told: little
+/// for a node about to give way, more for one that slides or hardly needs friction.
+double friction_slack(const Friction& friction, const Points& x, int i);
+
+/// Node i holds by more than what it would keep if it gave way.
+bool about_to_slip(const Friction& friction, const Points& x, int i);
 
 } // namespace toile

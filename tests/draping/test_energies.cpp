@@ -176,8 +176,7 @@ void add_friction(std::vector<EnergyCase>& cases) {
             "friction", [f](const Points& at) { return value(f, at); },
             [f](const Points& at, VectorXd& g) { add_gradient(f, at, g); },
             [f](const Points& at, HessianKind kind, BlockMatrix& h) {
-                (void)kind;
-                add_hessian(f, at, h);
+                add_hessian(f, at, kind == HessianKind::exact, h);
             });
         cases.push_back({energy, {"sliding by more and more", x, 1e-10}, false});
     }

@@ -96,6 +96,7 @@ void ClothProblem::limit_strain(double turn) {
 void ClothProblem::renew_friction(const Points& x) {
     const Points force = contact_.body_forces(active_);
     rising_ = false;
+    drag_places(friction, x);
     for (int i = 0; i < points(); ++i) {
         const double now = force[i].norm();
         if (now == 0) {

@@ -62,6 +62,15 @@ double friction_slack(const Friction& f, const Points& x, int i) {
     return 0.3 * std::min(1 - slide, 1 - share);
 }
 
+void drag_places(Friction& f, const Points& x) {
+    const double reach = (1 + give) * f.slip;
+    for (std::size_t i = 0; i < f.force.size(); ++i) {
+        const Vec3 u = along(f, x, int(i));
+        const double length = u.norm();
+        if (length > reach) f.place[i] = x[i] - reach / length * u;
+    }
+}
+
 bool about_to_slip(const Friction& f, const Points& x, int i) {
     return law(along(f, x, i).norm() / f.slip).force > slide;
 }

@@ -32,6 +32,10 @@ Vec3 friction_force(const Friction& friction, const Points& x, int i);
 /// for a node about to give way, more for one that slides or hardly needs friction.
 double friction_slack(const Friction& friction, const Points& x, int i);
 
+/// Nodes that have slid drag their places along, so that friction opposes their next motion and does not pull them
+/// back to where they first were.
+void drag_places(Friction& friction, const Points& x);
+
 /// Node i holds by more than what it would keep if it gave way.
 bool about_to_slip(const Friction& friction, const Points& x, int i);
 

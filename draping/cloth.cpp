@@ -39,6 +39,8 @@ ContactCloth contact_cloth(const Garment& g) {
             c.edge_length[edge] = std::max(c.edge_length[edge], length[k]);
         }
     }
+    for (const Stitch& s : g.stitches)
+        if (s.r > 0 && s.r < 1) c.sewn_to_edge.push_back({s.a, s.b[0], s.b[1]});
     // Nodes that stitches will merge count as one.
     c.group.resize(g.node_count);
     for (int i = 0; i < g.node_count; ++i) c.group[i] = i;
@@ -141,7 +143,8 @@ void ClothProblem::arrive(const Points& x) {
 }
 
 double ClothProblem::value(const Points& x) {
-    double sum = sheet_value(sheet_, x) + toile::value(stitches, x) + toile::value(hooks, x);
+    double sum = sheet_value(sheet_, x) + toile::value(stitches, x) + toile::value(hooks, x) +
+                 toile::value(elastics, x);
     for (int i = 0; i < points(); ++i) sum += node_mass_[i] * gravity * x[i].y();
     if (friction.coefficient > 0) sum += toile::value(friction, x);
     return sum + contact_.value(contact_.active(x));
@@ -153,6 +156,7 @@ void ClothProblem::gradient(const Points& x, Eigen::VectorXd& g) {
     g = flat(sheet);
     add_gradient(stitches, x, g);
     add_gradient(hooks, x, g);
+    add_gradient(elastics, x, g);
     for (int i = 0; i < points(); ++i) g[3 * i + 1] += node_mass_[i] * gravity;
     if (friction.coefficient > 0) add_gradient(friction, x, g);
     contact_.add_gradient(active_, g);
@@ -164,6 +168,7 @@ void ClothProblem::make_pattern() {
     std::vector<std::pair<int, int>> pairs;
     sheet_couplings(sheet_, pairs);
     couplings(stitches, pairs);
+    couplings(elastics, pairs);
     contact_.couplings(active_, pairs);
     matrix_ = BlockMatrix(points(), pairs);
     sheet_slots(sheet_, matrix_);
@@ -183,6 +188,7 @@ BlockMatrix& ClothProblem::hessian(const Points& x, bool exact, bool& pattern_ch
     sheet_hessian(sheet_, x, exact ? HessianKind::exact : HessianKind::projected, matrix_);
     add_hessian(stitches, x, matrix_);
     add_hessian(hooks, x, matrix_);
+    add_hessian(elastics, x, matrix_);
     if (friction.coefficient > 0) add_hessian(friction, x, exact, matrix_);
     return matrix_;
 }

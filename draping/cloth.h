@@ -5,6 +5,7 @@
 
 #include "draping/contact/contact.h"
 #include "draping/contact/friction.h"
+#include "draping/energy/elastic.h"
 #include "draping/energy/sheet.h"
 #include "draping/energy/spring.h"
 #include "draping/measure.h"
@@ -29,11 +30,13 @@ public:
     double gravity = 0; ///< m/s2 along -y
     std::vector<StitchSpring> stitches;
     std::vector<HookSpring> hooks;
+    std::vector<ElasticSegment> elastics;
     Friction friction;  ///< coefficient 0: none
     void pin(int node) { pinned_[node] = 1; }
 
     Sheet& sheet() { return sheet_; }
     Contact& contact() { return contact_; }
+    const Contact& contact() const { return contact_; }
     const std::vector<double>& node_mass() const { return node_mass_; }
 
     /// Every touching or later touching node is tied by friction to where it is now.

@@ -2,11 +2,12 @@
 #include "draping/drape.h"
 
 #include "draping/cloth.h"
+#include "draping/decisions.h"
+#include "draping/hooks.h"
 #include "draping/solve/settle.h"
-#include "sewing/arrange.h"
+#include "draping/where.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -32,9 +33,9 @@ constexpr double slid = 0.10;            // m below its place at which a held ed
 constexpr double coarse_compression = 0.2; // of the fabric's, on levels that are not the last
 constexpr double coarse_residual = 10;    // to which levels that are not the last are settled
 
-// Labels of edges that carry a garment by themselves and hold it up only once friction does: in GarmentCode files
-// the waist of skirts and trousers, and the top of strapless tops. Shoulders carry what hangs from collars.
-constexpr std::array<const char*, 2> carrying_labels{"lower_interface", "strapless_top"};
+constexpr double forced_share = 0.05;    // of the edge length: a gap below which a seam may be joined by force
+constexpr double inner_stitch_stiffness = 1e5; // N/m, of stitches to the inside of an edge once seams are closed
+constexpr double tight = 2e-3;           // m by which a section must be too short to count as too small
 
 double total(const std::vector<double>& v) {
     double sum = 0;
@@ -67,8 +68,7 @@ double largest_gap(const Garment& g, const Points& x) {
 
 /// One drape on its way: what the stages share.
 struct Run {
-    const Pattern& pattern;
-    const FlatPattern& flat;
+    const Staging& staging;
     const TriMesh& body;
     const PanelFabrics& fabrics;
     const DrapeOptions& options;
@@ -77,6 +77,7 @@ struct Run {
     Clock::time_point started = Clock::now();
     double density = 0;
     bool stopped = false;      ///< by the caller or by time
+    std::string stopped_by = {};
     int iterations_left = 0;
     double share_begin = 0, share_end = 0; ///< of the whole, of the stage at work
     double done = 0;
@@ -86,10 +87,14 @@ struct Run {
     Garment garment = {};      ///< of the level at work, closed
     Points x = {};             ///< its nodes
     bool grown = true;         ///< the body has its full size
-    std::map<std::string, double> carried_at = {}; ///< mean height of each carrying label where the file puts it
+    std::vector<std::string> held = {}, carried = {}; ///< labels of hooks that stay, and of those that are let go
+    std::map<std::string, double> carried_at = {}; ///< mean height of each of these where the file puts it
+    bool open = false;         ///< a seam could not be closed
+    DrapeFacts facts = {};
 
     double seconds() const { return std::chrono::duration<double>(Clock::now() - started).count(); }
-    int levels() const { return int(flat.levels.size()); }
+    int levels() const { return int(staging.levels.size()); }
+    double edge_length() const { return staging.levels[level].edge_length; }
     bool last_level() const { return level + 1 == levels(); }
 
     void begin(const char* name, double share) {
@@ -98,10 +103,15 @@ struct Run {
         share_end = std::min(1.0, share_begin + share);
     }
 
+    void stop(const char* by) {
+        stopped = true;
+        if (stopped_by.empty()) stopped_by = text("stopped by %s after %.3g s at the stage ", by, seconds()) + stage;
+    }
+
     bool tell(double within, double residual) {
         done = std::max(done, share_begin + (share_end - share_begin) * std::clamp(within, 0.0, 1.0));
         const double so_far = seconds();
-        if (so_far > options.max_seconds) stopped = true;
+        if (so_far > options.max_seconds) stop("the time limit");
         if (options.progress) {
             DrapeProgress p;
             p.stage = stage;
@@ -110,7 +120,7 @@ struct Run {
             p.residual = residual;
             p.done = done;
             p.seconds_left = done > 0.02 ? so_far * (1 - done) / done : std::numeric_limits<double>::infinity();
-            if (!options.progress(p)) stopped = true;
+            if (!options.progress(p)) stop("the caller");
         }
         return !stopped;
     }
@@ -124,6 +134,7 @@ struct Run {
             return tell(within + (1 - within) * (1 - std::exp(-i / 60.0)), r);
         };
         const SettleResult r = settle(problem, at, factor, o);
+        result.residual = r.residual;
         iterations_left -= r.iterations;
         result.levels.back().iterations += r.iterations;
         result.levels.back().factorisations += r.factorisations;
@@ -141,7 +152,7 @@ struct Run {
     ContactOptions contact_options() const {
         const double distance = last_level() ? options.clearance
                                              : std::max(options.clearance,
-                                                        contact_share * flat.levels[level].edge_length);
+                                                        contact_share * edge_length());
         ContactOptions c;
         c.body.distance = distance;
         c.body.floor = floor_share * distance;
@@ -151,45 +162,69 @@ struct Run {
     }
 };
 
-bool carries(const std::string& label) {
-    return std::find(carrying_labels.begin(), carrying_labels.end(), label) != carrying_labels.end();
+/// Hooks with no more than twice the garment's weight in all.
+std::vector<HookSpring> hooks_on(const Run& run, const Garment& g, const std::vector<std::string>& labels,
+                                 const ClothProblem& problem) {
+    std::map<std::string, double> heights;
+    for (const std::string& label : labels) heights[label] = run.carried_at.at(label);
+    return make_hooks(g, heights, 2 * 9.81 * total(problem.node_mass()));
 }
 
-/// Hooks hold the heights of carrying edges, with no more than twice the garment's weight in all.
-std::vector<HookSpring> hooks(const Garment& g, const std::map<std::string, double>& height, double weight) {
-    std::vector<HookSpring> springs;
-    std::vector<char> hooked(g.node_count, 0);
-    for (const BorderLine& b : g.borders) {
-        if (!carries(b.label)) continue;
-        for (int v : b.vertices) {
-            const int node = g.node_of_vertex[v];
-            if (hooked[node]) continue;
-            hooked[node] = 1;
-            HookSpring s;
-            s.node = node;
-            s.place = Vec3(0, height.at(b.label), 0);
-            s.axes = Vec3::UnitY();
-            springs.push_back(s);
-        }
-    }
-    for (HookSpring& s : springs) {
-        s.cap = 2 * weight / double(springs.size());
-        s.stiffness = s.cap / 0.01;
-    }
-    return springs;
+std::vector<std::string> all_hooked(const Run& run) {
+    std::vector<std::string> all = run.held;
+    all.insert(all.end(), run.carried.begin(), run.carried.end());
+    return all;
 }
 
-std::map<std::string, double> label_heights(const Garment& g, const Points& x) {
-    std::map<std::string, std::pair<double, int>> sum;
-    for (const BorderLine& b : g.borders)
-        if (carries(b.label))
-            for (int v : b.vertices) {
-                sum[b.label].first += x[g.node_of_vertex[v]].y();
-                ++sum[b.label].second;
-            }
-    std::map<std::string, double> mean;
-    for (const auto& [label, s] : sum) mean[label] = s.first / s.second;
-    return mean;
+/// Which edges hooks hold, and at what height.
+void choose_hooks(Run& run) {
+    const StagedLevel& staged = run.staging.levels[run.level];
+    const std::vector<std::string> labels = labels_of(staged.garment);
+    for (const std::string& word : run.options.hold)
+        for (const std::string& label : labels_called(word, labels))
+            if (std::find(run.held.begin(), run.held.end(), label) == run.held.end()) run.held.push_back(label);
+    for (const std::string& label : labels)
+        if (carries(label) && std::find(run.held.begin(), run.held.end(), label) == run.held.end())
+            run.carried.push_back(label);
+    run.carried_at = label_heights(staged.garment, staged.placed, all_hooked(run));
+}
+
+/// What acts on a closed garment at every level beside cloth, contact and weight: pins, bands, hooks that stay and
+/// stitches that cannot become shared nodes.
+void add_fixtures(Run& run, ClothProblem& problem) {
+    for (const auto& [node, place] : pinned_places(run.staging, run.level, run.garment)) {
+        problem.pin(node);
+        run.x[node] = place;
+    }
+    problem.elastics = elastic_segments(run.staging, run.garment);
+    problem.hooks = hooks_on(run, run.garment, run.held, problem);
+    for (const Stitch& s : run.garment.stitches)
+        problem.stitches.push_back({s.a, s.b, s.r, inner_stitch_stiffness, 1e3});
+}
+
+/// Bands are softened with the cloth, which they would crumple otherwise.
+void soften(const Run& run, ClothProblem& problem, double softness) {
+    problem.sheet().softness = softness;
+    problem.elastics = elastic_segments(run.staging, run.garment);
+    for (ElasticSegment& s : problem.elastics) s.stiffness *= softness;
+}
+
+void note_release(Run& run) {
+    const std::map<std::string, double> now = label_heights(run.garment, run.x, run.carried);
+    for (const std::string& label : run.carried)
+        run.facts.hooks.push_back({label, false, run.carried_at[label], now.at(label), 0});
+}
+
+bool touches_body(const ClothProblem& problem, const Points& x, const Triangle& nodes) {
+    const Points force = problem.contact().body_forces(problem.contact().active(x));
+    return std::any_of(nodes.begin(), nodes.end(), [&](int i) { return force[i].squaredNorm() > 0; });
+}
+
+/// The pairs that touch at x.
+std::vector<ContactPair> touching_pairs(const ClothProblem& problem, const Points& x) {
+    std::vector<ContactPair> pairs;
+    for (const ActivePair& a : problem.contact().active(x)) pairs.push_back(problem.contact().pair(a.pair));
+    return pairs;
 }
 
 /// Merges the nodes of closed seams; every group of nodes goes to its mean.
@@ -202,6 +237,23 @@ Points merge(const Garment& closed, const std::vector<int>& map, const Points& x
     }
     for (int i = 0; i < closed.node_count; ++i) merged[i] /= count[i];
     return merged;
+}
+
+/// Closes the stitches that are as good as closed and leaves the others open.
+void close_what_is_closed(Run& run, const Garment& open, const Points& x) {
+    Garment closable = open;
+    const auto gapes = [&](const Stitch& s) {
+        return (x[s.a] - (1 - s.r) * x[s.b[0]] - s.r * x[s.b[1]]).norm() >= weld_gap;
+    };
+    std::erase_if(closable.stitches, gapes);
+    std::vector<int> map;
+    run.garment = close_seams(closable, &map);
+    for (Stitch s : open.stitches) {
+        if (!gapes(s)) continue;
+        s.a = map[s.a], s.b = {map[s.b[0]], map[s.b[1]]};
+        run.garment.stitches.push_back(s);
+    }
+    run.x = merge(run.garment, map, x);
 }
 
 /// Pulls the seams of the coarsest level shut around the body; returns the widest gap left, m.
@@ -230,20 +282,33 @@ double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Po
     return last;
 }
 
+/// A seam stays open because its cloth does not reach round the body, or because something is in the way.
+void note_open_seam(Run& run, const Garment& open, const ClothProblem& problem, const Points& x) {
+    const double missing = missing_at_open_seam(open, x, run.fabrics);
+    const int s = widest_stitch(open, x);
+    const Triangle ends{open.stitches[s].a, open.stitches[s].b[0], open.stitches[s].b[1]};
+    const bool small = missing > tight && touches_body(problem, x, ends);
+    run.result.status = small ? DrapeStatus::too_small : DrapeStatus::stalled;
+    run.result.where = open_seam(open, x, run.staging.seam_names, run.body, touching_pairs(problem, x));
+    if (small)
+        run.result.where += text("; with the fabric stretched to its limit %.1f cm are missing round the garment there",
+                                 100 * missing);
+}
+
 /// Places and sews the coarsest level. The cloth may pass through itself on the way when it cannot close
 /// otherwise; what counts is that the sewn garment does not cross itself.
 void sew_coarsest(Run& run) {
     const auto start = Clock::now();
-    const FlatLevel& flat = run.flat.levels[0];
-    const Garment open = sew(run.pattern, flat);
-    const Points placed = place(run.pattern, flat);
-    run.carried_at = label_heights(open, placed);
-    run.result.levels.push_back({flat.edge_length, int(flat.points.size()), 0, 0, 0});
+    const StagedLevel& staged = run.staging.levels[0];
+    const Garment& open = staged.garment;
+    const Points& placed = staged.placed;
+    run.result.levels.push_back({staged.edge_length, int(open.uv.size()), 0, 0, 0});
     run.begin("sew", 0.15);
 
     std::vector<int> map;
     run.garment = close_seams(open, &map);
     double gap = 0;
+    Points opened;
     for (const bool self : {true, false}) {
         ContactOptions contact = run.contact_options();
         contact.self = self;
@@ -251,12 +316,18 @@ void sew_coarsest(Run& run) {
         problem.sheet().softness = 1.0 / 16;
         for (const Stitch& s : open.stitches)
             problem.stitches.push_back({s.a, s.b, s.r, seam_stiffness * s.length, seam_pull * s.length});
-        problem.hooks = hooks(open, run.carried_at, 9.81 * total(problem.node_mass()));
+        problem.hooks = hooks_on(run, open, all_hooked(run), problem);
+        for (const auto& [node, place] : pinned_places(run.staging, 0, open)) problem.pin(node);
         Points x = placed;
         gap = close_open_seams(run, open, problem, x);
         const Points merged = merge(run.garment, map, x);
-        const int crossings = count_intersections(node_triangles(run.garment), merged, run.body).cloth_cloth;
+        const int crossings = count_intersections(node_triangles(run.garment), merged, run.body, run.garment.stitches).cloth_cloth;
         run.x = merged;
+        run.open = gap >= forced_share * staged.edge_length;
+        if (run.open && opened.empty()) {
+            opened = x;
+            note_open_seam(run, open, problem, x);
+        }
         if (run.stopped || (gap < weld_gap && crossings == 0)) {
             if (!self && !run.stopped)
                 run.result.decisions.push_back("cloth passed through itself while seams closed: with contact "
@@ -265,7 +336,9 @@ void sew_coarsest(Run& run) {
             break;
         }
     }
-    if (gap >= weld_gap && !run.stopped)
+    if (run.open) { // the best state has open seams: joined by force it would cut itself or the body
+        close_what_is_closed(run, open, opened);
+    } else if (gap >= weld_gap && !run.stopped)
         run.result.warnings.push_back(
             text("seams were %.1f mm open when they were joined: something kept them apart", 1e3 * gap));
     const double s = std::chrono::duration<double>(Clock::now() - start).count();
@@ -276,19 +349,19 @@ void sew_coarsest(Run& run) {
 /// Carries the drape of one level to the next finer one.
 void refine(Run& run) {
     const Garment coarse = std::move(run.garment);
-    const FlatLevel& flat = run.flat.levels[run.level];
-    run.garment = close_seams(sew(run.pattern, flat));
+    const StagedLevel& staged = run.staging.levels[run.level];
+    run.garment = close_seams(staged.garment);
     Points fine(run.garment.node_count, Vec3::Zero());
     std::vector<int> count(run.garment.node_count, 0);
-    for (std::size_t v = 0; v < flat.points.size(); ++v) {
-        const Interpolation& p = run.flat.prolongation[run.level - 1][v];
+    for (std::size_t v = 0; v < run.garment.uv.size(); ++v) {
+        const Interpolation& p = run.staging.prolongation[run.level - 1][v];
         const int node = run.garment.node_of_vertex[v];
         for (int k = 0; k < 3; ++k) fine[node] += p.weight[k] * run.x[coarse.node_of_vertex[p.from[k]]];
         ++count[node];
     }
     for (int i = 0; i < run.garment.node_count; ++i) fine[i] /= count[i];
     run.x = std::move(fine);
-    run.result.levels.push_back({flat.edge_length, int(flat.points.size()), 0, 0, 0});
+    run.result.levels.push_back({staged.edge_length, int(run.garment.uv.size()), 0, 0, 0});
 }
 
 /// Draws the body in until the cloth is clear of it, and lets it grow back under contact. Fine triangles cut the
@@ -313,6 +386,7 @@ void clear_of_body(Run& run, ClothProblem& problem, Cholesky& factor) {
             break;
     }
     run.grown = depth == 0;
+    run.facts.drawn_in.push_back(depth);
     run.begin("grow", 0);
     SettleOptions o;
     o.tolerance = 1;
@@ -333,13 +407,41 @@ void clear_of_body(Run& run, ClothProblem& problem, Cholesky& factor) {
     problem.contact().set_options(final);
 }
 
+/// Says where a drape that has not converged is held up: too little cloth, what blocks the step, or the worst force.
 void note_where(Run& run, const ClothProblem& problem, const SettleResult& r) {
-    const Vec3 p = run.x[problem.worst_node()];
-    run.result.where = text("residual %.3g at (%.3f, %.3f, %.3f) m", r.residual, p.x(), p.y(), p.z());
-    int panel = -1;
-    for (std::size_t v = 0; v < run.garment.node_of_vertex.size() && panel < 0; ++v)
-        if (run.garment.node_of_vertex[v] == problem.worst_node()) panel = run.garment.panel_of_vertex[v];
-    if (panel >= 0) run.result.where += " on panel \"" + run.garment.panel_names[panel] + "\"";
+    std::string& where = run.result.where;
+    where = text("residual %.3g on ", r.residual) + place_of_node(run.garment, run.x, problem.worst_node());
+    if (r.end == SettleEnd::stalled && problem.blocking_pair() >= 0)
+        where += "; no step is possible, " +
+                 place_of_pair(run.garment, run.x, problem.contact().pair(problem.blocking_pair())) + " is in the way";
+    const Tightness t = find_tightness(run.garment, run.x, run.fabrics);
+    if (t.triangle < 0) return;
+    const std::string stretched =
+        place_of_triangle(run.garment, run.x, t.triangle) +
+        text(" is stretched by %.1f %% along the %s, more than the %.1f %% that ", 100 * t.strain,
+             t.warp ? "warp" : "weft", 100 * t.limit) +
+        run.fabrics[run.garment.panel_of_triangle[t.triangle]].name + " allows";
+    if (t.missing > tight && run.result.status == DrapeStatus::stalled &&
+        touches_body(problem, run.x, run.garment.nodes(t.triangle)))
+        run.result.status = DrapeStatus::too_small;
+    where = stretched + (t.missing > tight ? text("; %.1f cm are missing round the garment there", 100 * t.missing)
+                                           : "; " + where);
+}
+
+void note_facts(Run& run, const ClothProblem& problem) {
+    DrapeFacts& f = run.facts;
+    f.touch = count_touching(problem.contact(), run.x);
+    f.friction = run.result.friction;
+    f.clearance = run.options.clearance;
+    f.pins = int(pinned_places(run.staging, run.level, run.garment).size());
+    f.band_segments = int(problem.elastics.size());
+    for (const ElasticSegment& s : problem.elastics) {
+        f.band_rest += s.rest;
+        f.band_length += (run.x[s.b] - run.x[s.a]).norm();
+        f.band_pull = std::max(f.band_pull, s.stiffness * strain(s, run.x));
+    }
+    f.inner_stitches = int(run.garment.stitches.size());
+    f.inner_gap = largest_gap(run.garment, run.x);
 }
 
 /// Brings one level to rest: softened membrane first, whose longer steps find the lower drape.
@@ -348,14 +450,16 @@ void settle_level(Run& run) {
     const ContactOptions contact = run.contact_options();
     ClothProblem problem(run.garment, run.level_fabrics(), run.body, contact);
     problem.gravity = run.options.gravity;
-    const double weight = run.options.gravity * total(problem.node_mass());
+    add_fixtures(run, problem);
     Cholesky factor;
     const bool first = run.level == 0;
-    if (first) problem.hooks = hooks(run.garment, run.carried_at, weight);
+    const std::vector<HookSpring> kept = problem.hooks;
+    if (first) problem.hooks = hooks_on(run, run.garment, all_hooked(run), problem);
     run.begin("settle", 0.85 * std::pow(4.0, run.level) / ((std::pow(4.0, run.levels()) - 1) / 3));
     problem.rest_here(run.x, run.result.friction);
     problem.sheet().softness = first ? 1.0 / 16 : 1.0 / 4;
     clear_of_body(run, problem, factor);
+    run.stage = "settle";
 
     struct Pass {
         double softness;
@@ -365,8 +469,8 @@ void settle_level(Run& run) {
     // A carrying edge finds the height at which it fits before friction may hold it, since a tight band on a slight
     // cone is held by friction at any height.
     std::vector<Pass> passes{{1.0 / 4, 8, false}, {1, 600, false}};
-    if (first) passes = {{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, 150, false}};
-    if (!problem.hooks.empty()) {
+    if (first) passes = {{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, run.last_level() ? 600 : 150, false}};
+    if (problem.hooks.size() > kept.size()) {
         passes.insert(passes.end() - 1, {1, 100, true});
         problem.friction.coefficient = 0;
     }
@@ -374,9 +478,10 @@ void settle_level(Run& run) {
     for (const Pass& pass : passes) {
         if (run.stopped) break;
         const bool last_pass = &pass == &passes.back();
-        problem.sheet().softness = pass.softness;
-        if (!pass.hooked && !problem.hooks.empty()) {
-            problem.hooks.clear();
+        soften(run, problem, pass.softness);
+        if (!pass.hooked && problem.hooks.size() > kept.size()) {
+            note_release(run);
+            problem.hooks = kept;
             problem.rest_here(run.x, run.result.friction);
         }
         SettleOptions o;
@@ -396,6 +501,7 @@ void settle_level(Run& run) {
     run.result.barrier = {contact.body.distance, contact.body.stiffness};
     if (run.last_level()) {
         const int beyond = int(problem.beyond_limits(run.x).size());
+        note_facts(run, problem);
         if (run.stopped || run.iterations_left <= 0)
             run.result.status = DrapeStatus::limit;
         else if (!run.grown)
@@ -411,12 +517,13 @@ void settle_level(Run& run) {
     }
     const double s = std::chrono::duration<double>(Clock::now() - start).count();
     run.result.levels.back().seconds += s;
-    run.result.seconds.push_back({text("settle %g mm", 1e3 * run.flat.levels[run.level].edge_length), s});
+    run.result.seconds.push_back({text("settle %g mm", 1e3 * run.edge_length()), s});
 }
 
 /// What the promises that a residual does not show have come to.
 void prove(Run& run) {
-    for (const auto& [label, height] : label_heights(run.garment, run.x)) {
+    if (run.stopped) return;
+    for (const auto& [label, height] : label_heights(run.garment, run.x, all_hooked(run))) {
         const double drop = run.carried_at[label] - height;
         if (drop < slid) continue;
         run.result.status = DrapeStatus::slid_off;
@@ -424,11 +531,54 @@ void prove(Run& run) {
                                 100 * drop, run.carried_at[label]);
     }
     if (run.result.status != DrapeStatus::converged) return;
-    const IntersectionCount n = count_intersections(node_triangles(run.garment), run.x, run.body);
+    const IntersectionCount n = count_intersections(node_triangles(run.garment), run.x, run.body, run.garment.stitches);
     if (n.cloth_avatar + n.cloth_cloth == 0) return;
     run.result.status = DrapeStatus::stalled;
     run.result.where = text("%d triangle pairs of cloth and body and %d of cloth and cloth cross", n.cloth_avatar,
                             n.cloth_cloth);
+}
+
+/// The report's sentences on what was modelled.
+void decide(Run& run) {
+    for (const std::string& label : run.held) run.facts.hooks.push_back({label, true, run.carried_at[label], 0, 0});
+    const std::map<std::string, double> now = label_heights(run.garment, run.x, all_hooked(run));
+    for (HookFacts& h : run.facts.hooks) h.end = now.at(h.label);
+    for (const LevelReport& level : run.result.levels) run.facts.edge_lengths.push_back(level.edge_length);
+    const std::vector<std::string> all = decisions(run.facts, run.garment, run.x, run.fabrics, run.body);
+    run.result.decisions.insert(run.result.decisions.end(), all.begin(), all.end());
+}
+
+/// Starts from the earlier drape, unless the edit since then makes its cloth cross itself.
+bool start_again(Run& run) {
+    if (run.options.from.empty()) return false;
+    const Garment closed = close_seams(run.staging.levels.back().garment);
+    const int crossings = count_intersections(node_triangles(closed), run.options.from, {}, closed.stitches).cloth_cloth;
+    if (crossings > 0) {
+        run.result.decisions.push_back(text("the earlier drape was not taken as a start: after the edit %d pairs of "
+                                            "its triangles would cross",
+                                            crossings));
+        return false;
+    }
+    run.level = run.levels() - 1;
+    choose_hooks(run);
+    run.garment = closed;
+    run.x = run.options.from;
+    run.facts.restarted = true;
+    run.result.levels.push_back({run.edge_length(), int(closed.uv.size()), 0, 0, 0});
+    settle_level(run);
+    return true;
+}
+
+void sew_and_drape(Run& run) {
+    choose_hooks(run);
+    sew_coarsest(run);
+    if (run.open) return;
+    settle_level(run);
+    while (!run.last_level() && !run.stopped) {
+        ++run.level;
+        refine(run);
+        settle_level(run);
+    }
 }
 
 } // namespace
@@ -444,9 +594,9 @@ const char* to_string(DrapeStatus s) {
     return "stalled";
 }
 
-DrapeResult drape(const Pattern& pattern, const FlatPattern& flat, const Avatar& avatar, const PanelFabrics& fabrics,
+DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabrics& fabrics,
                   const DrapeOptions& options) {
-    Run run{.pattern = pattern, .flat = flat, .body = avatar.body, .fabrics = fabrics, .options = options};
+    Run run{.staging = staging, .body = avatar.body, .fabrics = fabrics, .options = options};
     run.result.tolerance = options.tolerance;
     run.result.friction = options.friction;
     run.iterations_left = options.max_iterations;
@@ -454,28 +604,24 @@ DrapeResult drape(const Pattern& pattern, const FlatPattern& flat, const Avatar&
         run.density = std::max(run.density, f.density);
         if (options.friction < 0) run.result.friction = std::max(run.result.friction, f.friction);
     }
-
-    if (!options.from.empty()) {
-        run.level = run.levels() - 1;
-        run.garment = close_seams(sew(pattern, flat.levels.back()));
-        run.x = options.from;
-        run.carried_at = label_heights(run.garment, place(pattern, flat.levels.back()));
-        run.result.levels.push_back({flat.levels.back().edge_length, int(flat.levels.back().points.size()), 0, 0, 0});
-        settle_level(run);
-    } else {
-        sew_coarsest(run);
-        settle_level(run);
-        while (!run.last_level() && !run.stopped) {
-            ++run.level;
-            refine(run);
-            settle_level(run);
-        }
+    if (!start_again(run)) sew_and_drape(run);
+    if (run.stopped) {
+        run.result.status = DrapeStatus::limit;
+        run.result.where = run.stopped_by +
+                           text(", level %d of %d, at a residual of %.3g", run.level + 1, run.levels(), run.result.residual);
     }
-    if (run.stopped) run.result.status = DrapeStatus::limit;
-    prove(run);
+    if (!run.open) {
+        prove(run);
+        decide(run);
+    }
     run.result.garment = std::move(run.garment);
     run.result.state.positions = std::move(run.x);
     return std::move(run.result);
+}
+
+DrapeResult drape(const Pattern& pattern, const FlatPattern& flat, const Avatar& avatar, const PanelFabrics& fabrics,
+                  const DrapeOptions& options) {
+    return drape(stage(pattern, flat), avatar, fabrics, options);
 }
 
 } // namespace toile

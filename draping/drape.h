@@ -2,8 +2,8 @@
 #pragma once
 
 #include "draping/measure.h"
+#include "draping/staging.h"
 #include "draping/state.h"
-#include "patterns/triangulate.h"
 
 #include <functional>
 
@@ -29,7 +29,7 @@ struct DrapeOptions {
     double gravity = 9.81;          ///< m/s2, along -y
     int max_iterations = 2000;      ///< Newton iterations on all levels together
     double max_seconds = 1e9;       ///< wall time after which the state reached is returned with status limit
-    std::vector<std::string> hold;  ///< labels whose hooks stay on to the end
+    std::vector<std::string> hold;  ///< edges whose hooks stay on to the end: words of labels_called()
     Points from;                    ///< when not empty: node positions of the closed garment to start from
     /// Called often (at least every two seconds); returns false to stop with the state reached.
     std::function<bool(const DrapeProgress&)> progress;
@@ -71,8 +71,12 @@ struct DrapeResult {
     std::vector<std::string> warnings;
 };
 
-/// Sews and drapes: place, sew, weld, grow, settle and refine on every level from coarse to fine, prove.
-/// `fabrics` has one entry per panel. Throws std::runtime_error only for input that check() would have refused.
+/// Sews and drapes: sew, weld, grow, settle and refine on every level from coarse to fine, prove. A seam that
+/// cannot be closed ends it: status stalled, and the garment is the coarsest, open where it would not close. `fabrics` has one
+/// entry per panel. Throws std::runtime_error only for input that check() would have refused.
+DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabrics& fabrics,
+                  const DrapeOptions& options);
+/// The same for stage(pattern, flat).
 DrapeResult drape(const Pattern& pattern, const FlatPattern& flat, const Avatar& avatar, const PanelFabrics& fabrics,
                   const DrapeOptions& options);
 

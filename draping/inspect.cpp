@@ -71,8 +71,9 @@ Inspection inspect(const Garment& garment, const Points& x, const TriMesh& body,
     TriMesh mesh = mesh_in_space(garment, x);
     found.joined_nodes = join_equal_points(mesh);
     measure_surface(mesh, found);
+    if (found.joined_nodes == 0) found.pieces = count_pieces(garment);
     found.seam_gap_max = seam_gap_max(garment, x);
-    found.intersections = count_intersections(mesh.triangles, mesh.points, body);
+    found.intersections = count_intersections(mesh.triangles, mesh.points, body, garment.stitches);
     found.has_body = !body.triangles.empty();
     if (found.has_body) found.clearance = clearance_min(mesh.triangles, mesh.points, body);
     found.has_pattern = std::any_of(garment.rest.edges.begin(), garment.rest.edges.end(),

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 namespace toile {
 
@@ -287,10 +288,30 @@ double seam_gap_max(const Garment& garment, const Points& x) {
     return gap;
 }
 
-IntersectionCount count_intersections(const std::vector<Triangle>& cloth, const Points& x,
-                                      const TriMesh& body) {
+IntersectionCount count_intersections(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body,
+                                      const std::vector<Stitch>& stitches) {
     const TriMesh mesh = {x, cloth};
-    return {int(intersecting_pairs(mesh, body).size()), int(self_intersecting_pairs(mesh).size())};
+    std::set<std::array<int, 2>> sewn; // a node and an end of the edge it is sewn to, both ways round
+    for (const Stitch& s : stitches)
+        if (s.r > 0 && s.r < 1)
+            for (const int end : s.b)
+                sewn.insert({{s.a, end}, {end, s.a}});
+    const auto joined = [&](const std::array<int, 2>& pair) {
+        for (const int a : cloth[pair[0]])
+            for (const int b : cloth[pair[1]])
+                if (sewn.count({a, b})) return true;
+        return false;
+    };
+    std::vector<std::array<int, 2>> own = self_intersecting_pairs(mesh);
+    if (!sewn.empty()) std::erase_if(own, joined);
+    return {int(intersecting_pairs(mesh, body).size()), int(own.size())};
+}
+
+int count_pieces(const Garment& garment) {
+    std::vector<Triangle> connected = node_triangles(garment);
+    for (const Stitch& s : garment.stitches)
+        if (s.r > 0 && s.r < 1) connected.push_back({s.a, s.b[0], s.b[1]});
+    return count_pieces(connected, garment.node_count);
 }
 
 double clearance_min(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body) {

@@ -61,9 +61,14 @@ EaseMeasure measure_ease(const Garment& garment, const Points& x, const TriMesh&
 /// Longest stitch, metres; 0 when every seam is closed.
 double seam_gap_max(const Garment& garment, const Points& x);
 
-/// By exact predicates; `cloth` is over nodes.
-IntersectionCount count_intersections(const std::vector<Triangle>& cloth, const Points& x,
-                                      const TriMesh& body);
+/// By exact predicates; `cloth` is over nodes. Triangles that one of the `stitches` joins by a node of the one and
+/// the inside of an edge of the other (0 < r < 1) lie on each other there, and do not count, as triangles that
+/// share a node do not.
+IntersectionCount count_intersections(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body,
+                                      const std::vector<Stitch>& stitches = {});
+
+/// Connected pieces of the cloth; stitches to the inside of an edge connect as shared nodes do.
+int count_pieces(const Garment& garment);
 
 /// Smallest distance between cloth and body, metres; 0 when they intersect, infinity when either is empty.
 double clearance_min(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body);

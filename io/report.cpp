@@ -82,15 +82,15 @@ struct Contact {
     double clearance = 0;
 };
 
-Contact measure_contact(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body) {
-    return {count_intersections(cloth, x, body), clearance_min(cloth, x, body)};
+Contact measure_contact(const Garment& garment, const Points& x, const TriMesh& body) {
+    const std::vector<Triangle> cloth = node_triangles(garment);
+    return {count_intersections(cloth, x, body, garment.stitches), clearance_min(cloth, x, body)};
 }
 
 Contact worst_contact(const DrapeResult& r, const TriMesh& body, bool written_as_float) {
-    const std::vector<Triangle> cloth = node_triangles(r.garment);
-    Contact worst = measure_contact(cloth, r.state.positions, body);
+    Contact worst = measure_contact(r.garment, r.state.positions, body);
     if (!written_as_float) return worst;
-    const Contact rounded = measure_contact(cloth, rounded_to_float(r.state.positions), body);
+    const Contact rounded = measure_contact(r.garment, rounded_to_float(r.state.positions), body);
     worst.count.cloth_avatar = std::max(worst.count.cloth_avatar, rounded.count.cloth_avatar);
     worst.count.cloth_cloth = std::max(worst.count.cloth_cloth, rounded.count.cloth_cloth);
     worst.clearance = std::min(worst.clearance, rounded.clearance);
@@ -120,7 +120,7 @@ nlohmann::ordered_json make_report(const DrapeResult& r, const TriMesh& body, co
         {"vertices", r.garment.uv.size()},
         {"nodes", r.garment.node_count},
         {"triangles", r.garment.triangles.size()},
-        {"pieces", count_pieces(node_triangles(r.garment), r.garment.node_count)},
+        {"pieces", count_pieces(r.garment)},
         {"levels", levels(r)},
         {"seconds", seconds(r, context)},
         {"peak_memory_bytes", peak_memory_bytes()},

@@ -3,6 +3,7 @@
 
 #include "io/read_pattern.h"
 #include "patterns/check.h"
+#include "src/drape_input.h"
 #include "src/length.h"
 
 #include <CLI/CLI.hpp>
@@ -64,7 +65,46 @@ void print_json(std::ostream& out, const Pattern& pattern, const std::vector<Iss
     out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
+/// What a staged mesh holds. Reading it refuses what cannot be draped.
+int check_staged(const CheckArguments& a, const Console& console) {
+    const DrapeInput input = read_staged_input(a.pattern, "", {});
+    const Garment& g = input.staging.levels[0].garment;
+    const Points& x = input.staging.levels[0].placed;
+    std::vector<int> triangles(g.panel_names.size(), 0), stitches(input.staging.seam_names.size(), 0);
+    std::vector<double> gap(stitches.size(), 0);
+    for (const int panel : g.panel_of_triangle)
+        ++triangles[panel];
+    int inside = 0;
+    for (const Stitch& s : g.stitches) {
+        inside += s.r > 0;
+        ++stitches[s.seam];
+        gap[s.seam] = std::max(gap[s.seam], (x[s.a] - (1 - s.r) * x[s.b[0]] - s.r * x[s.b[1]]).norm());
+    }
+    Json json{{"issues", Json::array()}, {"panels", Json::array()}, {"seams", Json::array()}};
+    for (const std::string& note : input.notes)
+        json["issues"].push_back({{"severity", "note"}, {"text", note}});
+    for (std::size_t p = 0; p < triangles.size(); ++p)
+        json["panels"].push_back({{"name", g.panel_names[p]}, {"triangles", triangles[p]}});
+    for (std::size_t s = 0; s < stitches.size(); ++s)
+        json["seams"].push_back({{"name", input.staging.seam_names[s]}, {"stitches", stitches[s]}, {"gap", gap[s]}});
+    if (a.json) {
+        console.out << json.dump(2, ' ', false, Json::error_handler_t::replace) << std::endl;
+        return exit_made;
+    }
+    for (const std::string& note : input.notes)
+        console.out << "note: " << note << '\n';
+    for (std::size_t p = 0; p < triangles.size(); ++p)
+        console.out << "panel " << g.panel_names[p] << ": " << triangles[p] << " triangles\n";
+    for (std::size_t s = 0; s < stitches.size(); ++s)
+        console.out << input.staging.seam_names[s] << ": " << stitches[s] << " stitches, "
+                    << show_length(gap[s]) << " apart at most\n";
+    console.out << triangles.size() << " panels, " << g.stitches.size() << " stitches, " << inside
+                << " of them to the inside of an edge\n" << std::flush;
+    return exit_made;
+}
+
 int check_command(const CheckArguments& a, const Console& console) {
+    if (is_staged(a.pattern)) return check_staged(a, console);
     const Pattern pattern = read_pattern(a.pattern);
     const std::vector<Issue> issues = check(pattern);
     int errors = 0, warnings = 0;
@@ -90,7 +130,7 @@ int check_command(const CheckArguments& a, const Console& console) {
 void add_check(CLI::App& app, Command& chosen) {
     CLI::App& command = *app.add_subcommand("check", "Say everything that is wrong with a pattern");
     const auto a = std::make_shared<CheckArguments>();
-    command.add_option("pattern", a->pattern, "Pattern file")->required()->type_name("FILE");
+    command.add_option("pattern", a->pattern, "Pattern, or a staged mesh (.obj)")->required()->type_name("FILE");
     command.add_flag("--json", a->json, "Print JSON");
     command.callback(
         [a, &chosen] { chosen = [a](const Console& console) { return check_command(*a, console); }; });

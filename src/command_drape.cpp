@@ -2,6 +2,7 @@
 #include "src/command_line.h"
 
 #include "geometry/parallel.h"
+#include "src/duration.h"
 #include "src/length.h"
 #include "src/options.h"
 #include "src/pipeline.h"
@@ -108,7 +109,7 @@ void add_drape(CLI::App& app, Command& chosen) {
     CLI::App& command = *app.add_subcommand("drape", "Sew a pattern and drape it on a body");
     const auto a = std::make_shared<DrapeArguments>();
     DrapeJob& job = a->job;
-    command.add_option("pattern", job.pattern, "Pattern file")->required()->type_name("FILE");
+    command.add_option("pattern", job.pattern, "Pattern, or a staged mesh (.obj)")->required()->type_name("FILE");
     command
         .add_option("--avatar", job.avatar,
                     "Body: OBJ, PLY, STL, GLB or COLLADA (default: the built-in form)")
@@ -131,6 +132,15 @@ void add_drape(CLI::App& app, Command& chosen) {
         ->type_name("NUMBER");
     add_length(command, "clearance", job.drape.clearance, 5e-5, 0.01,
                "Distance from the body below which contact acts");
+    command
+        .add_option("--hold", job.drape.hold,
+                    "Labelled edges held at their height to the end: a label of the file, or waist, collar, "
+                    "armhole, \"strapless top\"; may be repeated")
+        ->expected(1)
+        ->take_all()
+        ->type_name("LABEL");
+    add_duration(command, "time-limit", job.drape.max_seconds, 0.001, 1e9,
+                 "Time after which the state reached is written");
     command.add_flag("--with-avatar", job.with_avatar, "Write the body into the garment files too");
     add_unit_and_up(command, job.write);
     command

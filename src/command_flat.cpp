@@ -3,6 +3,7 @@
 
 #include "io/flat_svg.h"
 #include "io/read_pattern.h"
+#include "src/drape_input.h"
 
 #include <CLI/CLI.hpp>
 
@@ -31,6 +32,9 @@ void add_flat(CLI::App& app, Command& chosen) {
         });
     command.callback([a, &chosen] {
         chosen = [a](const Console&) -> int {
+            if (is_staged(a->pattern))
+                throw InputError(a->pattern + " is a staged mesh; a pattern of panels with edges was expected, a mesh "
+                                              "shows its own flat pattern in any viewer of texture coordinates");
             write_flat_svg(a->output, read_pattern(a->pattern));
             return exit_made;
         };

@@ -7,12 +7,11 @@
 #include "io/hash.h"
 #include "io/preview.h"
 #include "io/read_avatar.h"
-#include "io/read_pattern.h"
 #include "io/report.h"
 #include "io/start_from.h"
 #include "io/write_file.h"
-#include "patterns/check.h"
-#include "patterns/curve.h"
+#include "draping/hooks.h"
+#include "src/drape_input.h"
 #include "src/exit_code.h"
 
 #include <chrono>
@@ -26,7 +25,6 @@ namespace toile {
 namespace {
 
 constexpr std::uintmax_t max_file = std::uintmax_t(1) << 30;
-constexpr double max_triangles = 2e6;
 
 /// Seconds of the stages, and of all.
 class Stopwatch {
@@ -70,35 +68,6 @@ void refuse_targets(const DrapeJob& job) {
     }
 }
 
-std::string common_fabric(const Pattern& pattern, const std::string& asked) {
-    return !asked.empty() ? asked : !pattern.fabric.empty() ? pattern.fabric : "poplin";
-}
-
-Pattern sound_pattern(const std::string& path, std::vector<std::string>& warnings) {
-    Pattern pattern = read_pattern(path);
-    std::vector<std::string> errors;
-    for (const Issue& issue : check(pattern)) {
-        if (issue.severity == Severity::error) errors.push_back(issue.text);
-        if (issue.severity == Severity::warning) warnings.push_back(issue.text);
-    }
-    if (errors.empty()) return pattern;
-    const std::string more =
-        errors.size() == 1 ? ""
-                           : " ('toile check' lists this and " + std::to_string(errors.size() - 1) + " more)";
-    throw InputError(path + ": " + errors[0] + more);
-}
-
-void refuse_too_fine(const Pattern& pattern, double edge_length) {
-    double area = 0;
-    for (const Panel& panel : pattern.panels)
-        area += std::abs(signed_area(panel.outline));
-    const double triangles = area / (std::sqrt(3.0) / 4 * edge_length * edge_length);
-    if (triangles > max_triangles)
-        throw InputError("at this edge length the pattern has about " +
-                         std::to_string(long(triangles / 1e6)) + " million triangles, more than the " +
-                         std::to_string(long(max_triangles / 1e6)) + " million that are draped");
-}
-
 /// Everything that shapes the result.
 std::string input_hash(const DrapeJob& job) {
     Hash hash;
@@ -111,6 +80,8 @@ std::string input_hash(const DrapeJob& job) {
     add_file(job.avatar);
     add_file(job.from);
     hash.add(job.fabric);
+    for (const std::string& word : job.drape.hold)
+        hash.add("hold " + word + '\n');
     for (const double value :
          {job.form.height, job.form.bust, job.form.waist, job.form.hip, job.edge_length, job.drape.tolerance,
           job.drape.clearance, job.drape.friction, job.drape.gravity})
@@ -128,20 +99,23 @@ std::optional<BodyMeasures> measures_of(const TriMesh& body, std::vector<std::st
     }
 }
 
-FlatPattern triangulate_at(const Pattern& pattern, double edge_length) {
-    refuse_too_fine(pattern, edge_length);
-    TriangulateOptions options;
-    options.edge_length = edge_length;
-    options.levels = levels_for(edge_length);
-    return triangulate(pattern, options);
-}
-
-Points earlier_positions(const std::string& path, const Pattern& pattern, const FlatPattern& flat,
-                         std::vector<std::string>& notes) {
+Points earlier_positions(const std::string& path, const Staging& staging, std::vector<std::string>& notes) {
     if (path.empty()) return {};
     const ReadGarment earlier = read_garment(path);
     notes.insert(notes.end(), earlier.notes.begin(), earlier.notes.end());
-    return start_from(earlier, close_seams(sew(pattern, flat.levels.back())), path);
+    return start_from(earlier, close_seams(staging.levels.back().garment), path);
+}
+
+/// A misspelt word of --hold would let a garment fall in silence.
+void refuse_unknown_labels(const DrapeJob& job, const Staging& staging) {
+    const std::vector<std::string> labels = labels_of(staging.levels.back().garment);
+    std::string list;
+    for (const std::string& label : labels)
+        list += (list.empty() ? "" : ", ") + label;
+    for (const std::string& word : job.drape.hold)
+        if (labels_called(word, labels).empty())
+            throw InputError(job.pattern + ": no edge is labelled \"" + word + "\", which --hold names; " +
+                             (list.empty() ? "it has no labelled edges" : "its labels are " + list));
 }
 
 bool writes_floats(const DrapeJob& job) {
@@ -161,26 +135,6 @@ void write_all(const DrapeJob& job, DrapeOutcome& outcome) {
 }
 
 } // namespace
-
-int levels_for(double edge_length) {
-    int levels = 1;
-    for (double coarsest = edge_length; coarsest < 0.04 - 1e-9; coarsest *= 2)
-        ++levels;
-    return levels;
-}
-
-PanelFabrics panel_fabrics(const Pattern& pattern, const std::string& fabric) {
-    const std::string common = common_fabric(pattern, fabric);
-    PanelFabrics fabrics;
-    for (const Panel& panel : pattern.panels) {
-        try {
-            fabrics.push_back(fabric_preset(panel.fabric.empty() ? common : panel.fabric));
-        } catch (const std::invalid_argument& error) {
-            throw InputError("panel " + panel.name + ": " + error.what());
-        }
-    }
-    return fabrics;
-}
 
 TriMesh form_of(const FormMeasures& measures) {
     try {
@@ -204,8 +158,8 @@ DrapeOutcome run_job(const DrapeJob& job) {
     DrapeOutcome outcome;
     refuse_targets(job);
 
-    const Pattern pattern = sound_pattern(job.pattern, context.warnings);
-    const PanelFabrics fabrics = panel_fabrics(pattern, job.fabric);
+    Pattern pattern;
+    if (!is_staged(job.pattern)) pattern = sound_pattern(job.pattern, context.warnings);
     Body body = read_body(job.avatar, job.form, job.repair_avatar);
     context.decisions = body.notes;
     context.body_measures = measures_of(body.mesh, context.decisions);
@@ -213,12 +167,15 @@ DrapeOutcome run_job(const DrapeJob& job) {
     const Avatar avatar{body.mesh, smoothed_toward_core(body.mesh, 0.01)};
     watch.lap(context, "read");
 
-    const FlatPattern flat = triangulate_at(pattern, job.edge_length);
-    watch.lap(context, "triangulate");
+    const DrapeInput input = is_staged(job.pattern) ? read_staged_input(job.pattern, job.fabric, body.mesh)
+                                                    : input_of(pattern, job.fabric, job.edge_length);
+    context.decisions.insert(context.decisions.end(), input.notes.begin(), input.notes.end());
+    refuse_unknown_labels(job, input.staging);
+    watch.lap(context, is_staged(job.pattern) ? "read" : "triangulate");
 
     DrapeOptions options = job.drape;
-    options.from = earlier_positions(job.from, pattern, flat, context.decisions);
-    outcome.result = drape(pattern, flat, avatar, fabrics, options);
+    options.from = earlier_positions(job.from, input.staging, context.decisions);
+    outcome.result = drape(input.staging, avatar, input.fabrics, options);
     if (job.interrupted && job.interrupted())
         outcome.result.where = "stopped by a signal before it had converged";
     outcome.body = std::move(body.mesh);
@@ -227,12 +184,12 @@ DrapeOutcome run_job(const DrapeJob& job) {
     write_all(job, outcome);
     watch.lap(context, "write");
 
-    context.fabric = common_fabric(pattern, job.fabric);
+    context.fabric = input.fabric;
     context.blas = blas_name();
     context.threads = threads();
     context.written_as_float = writes_floats(job);
     context.total_seconds = watch.total();
-    outcome.report = report_json(outcome.result, outcome.body, fabrics, context);
+    outcome.report = report_json(outcome.result, outcome.body, input.fabrics, context);
     if (!job.report.empty()) write_file(job.report, outcome.report);
     outcome.written = targets(job);
     return outcome;

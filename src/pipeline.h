@@ -13,12 +13,12 @@
 namespace toile {
 
 struct DrapeJob {
-    std::string pattern; ///< file
+    std::string pattern; ///< file: a pattern, or a staged mesh (.obj)
     std::string avatar;  ///< file; empty: the built-in form of these measures
     FormMeasures form;
     bool repair_avatar = false;
     std::string fabric;        ///< preset; empty: what the pattern says, else poplin
-    double edge_length = 0.01; ///< m, mean edge of the finest mesh
+    double edge_length = 0.01; ///< m, mean edge of the finest mesh; a staged mesh keeps its own
     std::string from;          ///< garment file to start from; empty: the pattern's own placement
     DrapeOptions drape;
     std::function<bool()> interrupted; ///< whether drape.progress stopped the work; for the report's `where`
@@ -39,13 +39,6 @@ struct DrapeOutcome {
 /// Does the job. Throws InputError (a sentence) when a file is refused or a target cannot be written, before
 /// anything is; a drape that does not converge is written all the same, and `result.status` says so.
 DrapeOutcome run_job(const DrapeJob& job);
-
-/// Nested levels for a finest edge length: twice as coarse each, the coarsest of 40 to 80 mm.
-int levels_for(double edge_length);
-
-/// The fabric of every panel: its own, else `fabric`, else the pattern's, else poplin. Throws InputError
-/// naming the panel whose fabric is not known.
-PanelFabrics panel_fabrics(const Pattern& pattern, const std::string& fabric);
 
 /// The built-in form. Throws CommandLineError when a measure is out of range.
 TriMesh form_of(const FormMeasures& measures);

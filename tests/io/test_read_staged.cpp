@@ -129,6 +129,17 @@ TEST_CASE("panels are the connected pieces of the flat, whatever the groups say"
     CHECK(closed.garment.node_of_vertex[4] == 1);
 }
 
+TEST_CASE("a stitch that would join two corners of a triangle is left out, with a note") {
+    const StagedMesh direct = staged(replaced(sample, "l 8 3\n", "l 6 7\n"));
+    CHECK(direct.garment.stitches.size() == 3);
+    REQUIRE(direct.notes.size() == 1);
+    CHECK_THAT(direct.notes[0], Contains("nodes 5 and 6 was left out"));
+    // By way of a node of the other panel.
+    const StagedMesh chain = staged(replaced(sample, "l 8 3\n", "l 2 6\n"));
+    CHECK(chain.garment.stitches.size() == 3);
+    CHECK(chain.notes.size() == 1);
+}
+
 TEST_CASE("the unit of a staged mesh is told by its flat") {
     for (double per_metre : {10.0, 100.0, 1000.0}) {
         const StagedMesh s = staged(moved([&](const Vec3& p) -> Vec3 { return per_metre * p; }));
@@ -196,8 +207,9 @@ TEST_CASE("a dress staged by another program is read on its body") {
     CHECK(g.panel_names.size() == 14);
     CHECK(g.stitches.size() > 820); // 24 name a pair again
     CHECK(g.stitches.size() <= 851);
-    REQUIRE(s.notes.size() == 1);
+    REQUIRE(s.notes.size() == 2);
     CHECK_THAT(s.notes[0], Contains("z up"));
+    CHECK_THAT(s.notes[1], Contains("nodes 990 and 989 was left out")); // its own program collapses that triangle
     double area = 0;
     for (const Mat2& e : g.rest.edges)
         area += 0.5 * (e(0, 0) * e(1, 1) - e(0, 1) * e(1, 0));

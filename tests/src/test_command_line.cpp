@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/write_file.h"
 #include "io/write_garment.h"
+#include "src/drape_input.h"
+#include "src/duration.h"
 #include "src/length.h"
 #include "src/pipeline.h"
 #include "src/progress.h"

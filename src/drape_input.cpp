@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "src/drape_input.h"
+
+#include "io/companion.h"
+#include "io/read_pattern.h"
+#include "io/read_staged.h"
+#include "patterns/curve.h"
+
+#include <cmath>
+#include <filesystem>
+
+namespace toile {
+namespace {
+
+constexpr double max_triangles = 2e6;
+
+void refuse_too_fine(const Pattern& pattern, double edge_length) {
+    double area = 0;
+    for (const Panel& panel : pattern.panels)
+        area += std::abs(signed_area(panel.outline));
+    const double triangles = area / (std::sqrt(3.0) / 4 * edge_length * edge_length);
+    if (triangles > max_triangles)
+        throw InputError("at this edge length the pattern has about " +
+                         std::to_string(long(triangles / 1e6)) + " million triangles, more than the " +
+                         std::to_string(long(max_triangles / 1e6)) + " million that are draped");
+}
+
+/// The panel's own fabric, else the one asked for, else the pattern's, else poplin.
+PanelFabrics fabrics_of(const Pattern& pattern, const std::string& common) {
+    PanelFabrics fabrics;
+    for (const Panel& panel : pattern.panels) {
+        try {
+            fabrics.push_back(fabric_preset(panel.fabric.empty() ? common : panel.fabric));
+        } catch (const std::invalid_argument& error) {
+            throw InputError("panel " + panel.name + ": " + error.what());
+        }
+    }
+    return fabrics;
+}
+
+std::string common_fabric(const Pattern& pattern, const std::string& asked) {
+    return !asked.empty() ? asked : !pattern.fabric.empty() ? pattern.fabric : "poplin";
+}
+
+/// Where the vertices of a border loop lie, as fractions of its length.
+std::vector<double> fractions(const Garment& g, const std::vector<int>& line) {
+    std::vector<double> at{0};
+    for (std::size_t k = 1; k < line.size(); ++k)
+        at.push_back(at.back() + (g.uv[line[k]] - g.uv[line[k - 1]]).norm());
+    const double whole = at.back();
+    for (double& a : at)
+        a /= whole;
+    return at;
+}
+
+/// What a companion can speak of: the panels, each with an edge per loop of its border.
+Pattern named_panels(const Garment& g) {
+    Pattern pattern;
+    for (const std::string& name : g.panel_names) {
+        pattern.panels.emplace_back();
+        pattern.panels.back().name = name;
+    }
+    for (const BorderLine& line : g.borders)
+        pattern.panels[line.panel].outline.push_back(
+            {g.uv[line.vertices.front()], g.uv[line.vertices.back()], Straight{}, line.label});
+    return pattern;
+}
+
+void refuse_shapes(const Pattern& pattern, const std::string& companion) {
+    for (const Panel& panel : pattern.panels)
+        if (!panel.holes.empty() || !panel.lines.empty() || panel.grain != Panel{}.grain)
+            throw InputError(companion + " gives panel \"" + panel.name +
+                             "\" a grain, holes or lines; a staged mesh has its own, and fabric, layer, pins and "
+                             "elastics were expected");
+    if (!pattern.seams.empty())
+        throw InputError(companion + " gives seams; a staged mesh has its stitches in the mesh file");
+}
+
+} // namespace
+
+bool is_staged(const std::string& path) {
+    return path.ends_with(".obj");
+}
+
+Pattern sound_pattern(const std::string& path, std::vector<std::string>& warnings) {
+    Pattern pattern = read_pattern(path);
+    std::vector<std::string> errors;
+    for (const Issue& issue : check(pattern)) {
+        if (issue.severity == Severity::error) errors.push_back(issue.text);
+        if (issue.severity == Severity::warning) warnings.push_back(issue.text);
+    }
+    if (errors.empty()) return pattern;
+    const std::string more =
+        errors.size() == 1 ? ""
+                           : " ('toile check' lists this and " + std::to_string(errors.size() - 1) + " more)";
+    throw InputError(path + ": " + errors[0] + more);
+}
+
+DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length) {
+    refuse_too_fine(pattern, edge_length);
+    TriangulateOptions options;
+    options.edge_length = edge_length;
+    options.levels = levels_for(edge_length);
+    DrapeInput input;
+    input.fabric = common_fabric(pattern, fabric);
+    input.fabrics = fabrics_of(pattern, input.fabric);
+    input.staging = stage(pattern, triangulate(pattern, options));
+    return input;
+}
+
+DrapeInput read_staged_input(const std::string& path, const std::string& fabric, const TriMesh& body) {
+    ReadStagedOptions options;
+    options.body = &body;
+    StagedMesh staged = read_staged(path, options);
+    Garment& g = staged.garment;
+    for (BorderLine& line : g.borders)
+        line.at = fractions(g, line.vertices);
+    Pattern said = named_panels(g);
+    const std::string companion = companion_path(path);
+    if (std::filesystem::exists(companion)) {
+        read_companion(companion, said);
+        refuse_shapes(said, companion);
+    }
+    DrapeInput input;
+    input.notes = std::move(staged.notes);
+    input.fabric = common_fabric(said, fabric);
+    input.fabrics = fabrics_of(said, input.fabric);
+    for (std::size_t p = 0; p < said.panels.size(); ++p) {
+        g.panel_fabrics[p] = said.panels[p].fabric;
+        g.panel_layers[p] = said.panels[p].layer;
+    }
+    input.staging = stage(std::move(g), std::move(staged.positions), std::move(said.pins), std::move(said.elastics));
+    return input;
+}
+
+int levels_for(double edge_length) {
+    int levels = 1;
+    for (double coarsest = edge_length; coarsest < 0.04 - 1e-9; coarsest *= 2)
+        ++levels;
+    return levels;
+}
+
+} // namespace toile

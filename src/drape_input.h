@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// The garment of a job, whatever it is read from.
+
+#include "draping/staging.h"
+#include "draping/measure.h"
+#include "patterns/check.h"
+#include "patterns/triangulate.h"
+
+#include <string>
+#include <vector>
+
+namespace toile {
+
+struct DrapeInput {
+    Staging staging;
+    PanelFabrics fabrics; ///< one per panel
+    std::string fabric;   ///< name of the garment's
+    std::vector<std::string> notes, warnings;
+};
+
+/// Whether a file is a staged mesh by its name (.obj), else a pattern.
+bool is_staged(const std::string& path);
+
+/// A pattern that check() finds no error in. Its warnings are added. Throws InputError with the first error.
+Pattern sound_pattern(const std::string& path, std::vector<std::string>& warnings);
+
+/// The pattern meshed at `edge_length` metres. Throws InputError when that is too fine.
+DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length);
+
+/// A staged mesh and its companion, which may say fabrics, layers, pins and elastics; the edges of its panels are
+/// the loops of their border. Throws InputError.
+DrapeInput read_staged_input(const std::string& path, const std::string& fabric, const TriMesh& body);
+
+/// Nested levels for a finest edge length: twice as coarse each, the coarsest of 40 to 80 mm.
+int levels_for(double edge_length);
+
+} // namespace toile

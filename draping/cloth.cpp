@@ -80,7 +80,7 @@ ClothProblem::ClothProblem(const Garment& garment, const PanelFabrics& fabrics, 
     least_weight_ = 0.1 * sum / garment.node_count;
 }
 
-void ClothProblem::rest_here(const Points& x, double coefficient) {
+void ClothProblem::rest_here(const Points& x, double coefficient, bool at_rest) {
     friction.coefficient = coefficient;
     friction.place = x;
     friction.normal.assign(x.size(), Vec3::UnitY());
@@ -88,6 +88,7 @@ void ClothProblem::rest_here(const Points& x, double coefficient) {
     arrivals_ = 0;
     residual_ = renewed_at_ = std::numeric_limits<double>::infinity();
     near_rest_ = rising_ = false;
+    trusted_ = at_rest;
 }
 
 void ClothProblem::limit_strain(double turn) {
@@ -105,7 +106,8 @@ void ClothProblem::renew_friction(const Points& x) {
             friction.force[i] = 0;
         } else if (std::abs(now - friction.force[i]) > friction_slack(friction, x, i) * now) {
             // Impacts of a single step must not become friction: the force follows a rise slowly.
-            friction.force[i] = std::min(now, std::max(2 * friction.force[i], 9.81 * node_mass_[i]));
+            const double most = std::max(2 * friction.force[i], 9.81 * node_mass_[i]);
+            friction.force[i] = trusted_ ? now : std::min(now, most);
             friction.normal[i] = force[i] / now;
             rising_ = rising_ || friction.force[i] < now;
         }
@@ -124,6 +126,23 @@ void ClothProblem::weaken_friction(const Points& x) {
     }
 }
 
+// What is left of the forces at rest is friction. The state came to rest with the normals of a few steps before: a
+// normal within 30 degrees that leaves no force over is taken for the one it had.
+void ClothProblem::take_up_friction(const Points& x) {
+    renew_friction(x);
+    trusted_ = false;
+    Eigen::VectorXd g;
+    gradient(x, g);
+    for (int i = 0; i < points(); ++i) {
+        const Vec3 force = g.segment<3>(3 * i);
+        if (!(friction.force[i] > 0 && force.norm() > 0)) continue;
+        Vec3& normal = friction.normal[i];
+        const Vec3 along = force.normalized();
+        if (std::abs(normal.dot(along)) < 0.5) normal = (normal - normal.dot(along) * along).normalized();
+        hold_by(friction, x, i, force - force.dot(normal) * normal);
+    }
+}
+
 void ClothProblem::arrive(const Points& x) {
     contact_.prepare(x, Eigen::VectorXd::Zero(3 * points()));
     active_ = contact_.active(x);
@@ -131,6 +150,10 @@ void ClothProblem::arrive(const Points& x) {
     // Near rest friction only gives way where it is more than contact can answer: less than that is friction
     // too, and forces that follow one another up and down would not come to rest. It grows only where a node would
     // give way for want of it.
+    if (trusted_) {
+        take_up_friction(x);
+        return;
+    }
     near_rest_ = near_rest_ || residual_ < friction_rest;
     const bool renew = arrivals_ % renew_every == 0 || residual_ < 0.1 * renewed_at_;
     ++arrivals_;

@@ -39,8 +39,9 @@ public:
     const Contact& contact() const { return contact_; }
     const std::vector<double>& node_mass() const { return node_mass_; }
 
-    /// Every touching or later touching node is tied by friction to where it is now.
-    void rest_here(const Points& x, double coefficient);
+    /// Every touching or later touching node is tied by friction to where it is now. If x is a state at rest,
+    /// friction is at once what holds it there; otherwise it follows contact slowly.
+    void rest_here(const Points& x, double coefficient, bool at_rest = false);
 
     /// Turns the strain limits on, as hard as `turn` says (see StrainLimit).
     void limit_strain(double turn);
@@ -66,6 +67,7 @@ private:
     void make_pattern();
     void renew_friction(const Points& x);
     void weaken_friction(const Points& x);
+    void take_up_friction(const Points& x);
 
     Sheet sheet_;
     Contact contact_;
@@ -79,6 +81,7 @@ private:
     std::vector<StrainLimit> limits_; ///< as the fabrics have them
     int arrivals_ = 0;               ///< since the cloth was tied to its place
     bool near_rest_ = false;
+    bool trusted_ = false;           ///< the contact forces of the next arrival are those of a state at rest
     bool rising_ = false;            ///< some node's friction has yet to catch up with its normal force
     double residual_ = 0, renewed_at_ = 0;
     int worst_ = 0, blocking_ = -1;

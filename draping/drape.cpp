@@ -25,6 +25,7 @@ constexpr double seam_pull = 6;          // N per metre of seam: what a far open
 constexpr double weld_gap = 2e-4;        // m, below which a seam is closed for good
 constexpr double contact_share = 0.06;   // of the edge length: contact distance of levels that are not the last
 constexpr double barrier_stiffness = 1e7; // Pa/m for a cloth of 0.15 kg/m2 at a distance of half a millimetre
+constexpr double sewing_softness = 0.1;   // of the barrier while seams are pulled shut, which takes little force
 constexpr double floor_share = 0.1;      // of the contact distance that is never entered
 constexpr double grow_distance = 2e-3;   // m, contact distance while the body grows back
 constexpr double soft_limit = 0.7;    // turn of the strain limits' barrier that cloth can meet from beyond them
@@ -270,8 +271,9 @@ double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Po
         run.settle_some(problem, x, factor, o);
         const double gap = largest_gap(open, x);
         if (gap < weld_gap) return gap;
-        if (gap < 0.01)
-            for (auto& s : problem.stitches) s.stiffness = std::min(3 * s.stiffness, 2e4 * s.cap);
+        // A seam that does not pull with all it may is pulled harder.
+        for (auto& s : problem.stitches)
+            if (s.stiffness * gap < s.cap) s.stiffness = std::min(3 * s.stiffness, 2e4 * s.cap);
         if (gap > 0.95 * last) {
             if (cap_scale > 30) return gap;
             cap_scale *= 1.5;
@@ -312,6 +314,8 @@ void sew_coarsest(Run& run) {
     for (const bool self : {true, false}) {
         ContactOptions contact = run.contact_options();
         contact.self = self;
+        contact.body.stiffness *= sewing_softness;
+        contact.cloth.stiffness *= sewing_softness;
         ClothProblem problem(open, run.fabrics, run.body, contact);
         problem.sheet().softness = 1.0 / 16;
         for (const Stitch& s : open.stitches)
@@ -338,9 +342,12 @@ void sew_coarsest(Run& run) {
     }
     if (run.open) { // the best state has open seams: joined by force it would cut itself or the body
         close_what_is_closed(run, open, opened);
-    } else if (gap >= weld_gap && !run.stopped)
-        run.result.warnings.push_back(
-            text("seams were %.1f mm open when they were joined: something kept them apart", 1e3 * gap));
+    } else {
+        run.result.where.clear(); // what kept a seam open with contact between panels is no matter any more
+        if (gap >= weld_gap && !run.stopped)
+            run.result.warnings.push_back(
+                text("seams were %.1f mm open when they were joined: something kept them apart", 1e3 * gap));
+    }
     const double s = std::chrono::duration<double>(Clock::now() - start).count();
     run.result.levels.back().seconds += s;
     run.result.seconds.push_back({"sew", s});
@@ -456,8 +463,8 @@ void settle_level(Run& run) {
     const std::vector<HookSpring> kept = problem.hooks;
     if (first) problem.hooks = hooks_on(run, run.garment, all_hooked(run), problem);
     run.begin("settle", 0.85 * std::pow(4.0, run.level) / ((std::pow(4.0, run.levels()) - 1) / 3));
-    problem.rest_here(run.x, run.result.friction);
-    problem.sheet().softness = first ? 1.0 / 16 : 1.0 / 4;
+    problem.rest_here(run.x, run.result.friction, run.facts.restarted);
+    problem.sheet().softness = run.facts.restarted ? 1 : first ? 1.0 / 16 : 1.0 / 4;
     clear_of_body(run, problem, factor);
     run.stage = "settle";
 
@@ -470,6 +477,7 @@ void settle_level(Run& run) {
     // cone is held by friction at any height.
     std::vector<Pass> passes{{1.0 / 4, 8, false}, {1, 600, false}};
     if (first) passes = {{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, run.last_level() ? 600 : 150, false}};
+    if (run.facts.restarted) passes = {{1, 600, false}};
     if (problem.hooks.size() > kept.size()) {
         passes.insert(passes.end() - 1, {1, 100, true});
         problem.friction.coefficient = 0;

@@ -2,6 +2,7 @@
 #include "draping/contact/friction.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace toile {
 
@@ -60,6 +61,15 @@ void add_gradient(const Friction& f, const Points& x, Eigen::VectorXd& g) {
 double friction_slack(const Friction& f, const Points& x, int i) {
     const double share = law(along(f, x, i).norm() / f.slip).force;
     return 0.3 * std::min(1 - slide, 1 - share);
+}
+
+void hold_by(Friction& f, const Points& x, int i, const Vec3& force) {
+    const double most = f.coefficient * f.force[i], size = force.norm();
+    f.place[i] = x[i];
+    if (!(most > 0 && size > 0)) return;
+    // hold (2y - y^2) = share of the limit
+    const double y = 1 - std::sqrt(1 - std::min(size / (hold * most), 1.0));
+    f.place[i] += y * f.slip / size * force;
 }
 
 void drag_places(Friction& f, const Points& x) {

@@ -32,6 +32,9 @@ Vec3 friction_force(const Friction& friction, const Points& x, int i);
 /// for a node about to give way, more for one that slides or hardly needs friction.
 double friction_slack(const Friction& friction, const Points& x, int i);
 
+/// Moves the place of node i such that, at x, friction is `force` (N, along the body; at most what friction can do).
+void hold_by(Friction& friction, const Points& x, int i, const Vec3& force);
+
 /// Nodes that have slid drag their places along, so that friction opposes their next motion and does not pull them
 /// back to where they first were.
 void drag_places(Friction& friction, const Points& x);

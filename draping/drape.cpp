@@ -510,7 +510,7 @@ void settle_level(Run& run) {
     if (run.last_level()) {
         const int beyond = int(problem.beyond_limits(run.x).size());
         note_facts(run, problem);
-        if (run.stopped || run.iterations_left <= 0)
+        if (run.stopped || (run.iterations_left <= 0 && beyond == 0))
             run.result.status = DrapeStatus::limit;
         else if (!run.grown)
             run.result.status = DrapeStatus::too_small;

@@ -266,6 +266,7 @@ double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Po
     o.exact_below = 0;
     constexpr int rounds = 60;
     double last = std::numeric_limits<double>::infinity(), cap_scale = 1;
+    int locked = 0;
     for (int round = 0; round < rounds && !run.stopped; ++round) {
         o.time_step = std::min(0.02 * std::pow(2.0, round / 3), 1.0);
         run.settle_some(problem, x, factor, o);
@@ -274,6 +275,8 @@ double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Po
         // A seam that does not pull with all it may is pulled harder.
         for (auto& s : problem.stitches)
             if (s.stiffness * gap < s.cap) s.stiffness = std::min(3 * s.stiffness, 2e4 * s.cap);
+        locked = gap > 0.995 * last ? locked + 1 : 0;
+        if (locked == 4) return gap; // pulling harder moves nothing: something is in the way
         if (gap > 0.95 * last) {
             if (cap_scale > 30) return gap;
             cap_scale *= 1.5;

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Real garments from file to files, as a table: bench_drape 20mm [name ...]. Patterns, bodies and fabrics are those
+// of garmentcode/MANIFEST.tsv in the folder that TOILE_TEST_DATA names; without names, all that are to be draped.
+#include "src/length.h"
+#include "src/pipeline.h"
+#include "tests/support/temp_folder.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <sstream>
+
+using namespace toile;
+
+namespace {
+
+struct Entry {
+    std::string name, body, fabric, expect;
+};
+
+std::vector<Entry> manifest(const std::string& folder) {
+    std::vector<Entry> entries;
+    std::ifstream file(folder + "/MANIFEST.tsv");
+    std::string line;
+    std::getline(file, line); // the heading
+    while (std::getline(file, line)) {
+        std::istringstream fields(line);
+        Entry e;
+        for (std::string* field : {&e.name, &e.body, &e.fabric, &e.expect}) std::getline(fields, *field, '\t');
+        e.name = e.name.substr(0, e.name.find("_specification"));
+        entries.push_back(e);
+    }
+    return entries;
+}
+
+void drape_one(const Entry& e, const std::string& data, double edge_length) {
+    const test::TempFolder folder;
+    DrapeJob job;
+    job.pattern = data + "/garmentcode/" + e.name + "_specification.json";
+    job.avatar = data + "/bodies/" + e.body;
+    job.fabric = e.fabric;
+    job.edge_length = edge_length;
+    job.garments = {folder / "a.obj", folder / "a.glb"};
+    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t cpu = std::clock();
+    const DrapeOutcome outcome = run_job(job);
+    const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double spent = double(std::clock() - cpu) / CLOCKS_PER_SEC;
+    const auto r = nlohmann::json::parse(outcome.report);
+    std::string iterations, factorisations;
+    for (const LevelReport& level : outcome.result.levels) {
+        iterations += (iterations.empty() ? "" : " / ") + std::to_string(level.iterations);
+        factorisations += (factorisations.empty() ? "" : " / ") + std::to_string(level.factorisations);
+    }
+    const auto& strain = r["strain"];
+    std::printf("| %s | %s, %s | %d | %s | %s | %.1f | %.1f | %s | %.1e | %.2f, %.2f | %.1f | %.2f | %d, %d | %.0f |\n",
+                e.name.c_str(), e.body.substr(0, e.body.find('.')).c_str(), e.fabric.c_str(),
+                r["vertices"].get<int>(), iterations.c_str(), factorisations.c_str(), wall, spent,
+                r["status"].get<std::string>().c_str(), r["residual"].get<double>(),
+                100 * strain["warp"]["max"].get<double>(), 100 * strain["weft"]["max"].get<double>(),
+                100 * strain["compressed_area"].get<double>(), 1e3 * r["clearance_min"].get<double>(),
+                r["intersections"]["cloth_avatar"].get<int>(), r["intersections"]["cloth_cloth"].get<int>(),
+                r["peak_memory_bytes"].get<double>() / 1e6);
+    std::fflush(stdout);
+    if (outcome.result.status != DrapeStatus::converged) std::printf("<!-- %s -->\n", outcome.result.where.c_str());
+}
+
+} // namespace
+
+int main(int count, char** words) {
+    const char* data = std::getenv("TOILE_TEST_DATA");
+    if (!data || count < 2) {
+        std::fprintf(stderr, "usage: TOILE_TEST_DATA=folder bench_drape EDGE_LENGTH [NAME ...]\n");
+        return 1;
+    }
+    const std::vector<std::string> names(words + 2, words + count);
+    std::printf("| garment | body, fabric | vertices | iterations by level | factorisations | s | CPU s | status | residual | "
+                "warp, weft max %% | compressed %% | clearance mm | crossings | MB |\n"
+                "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
+    for (const Entry& e : manifest(std::string(data) + "/garmentcode")) {
+        const bool chosen = std::find(names.begin(), names.end(), e.name) != names.end();
+        if (names.empty() ? e.expect != "refused" : chosen) drape_one(e, data, parse_length(words[1]));
+    }
+}

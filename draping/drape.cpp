@@ -67,6 +67,12 @@ double largest_gap(const Garment& g, const Points& x) {
     return gap;
 }
 
+double mean_gap(const Garment& g, const Points& x) {
+    double sum = 0;
+    for (const Stitch& s : g.stitches) sum += (x[s.a] - (1 - s.r) * x[s.b[0]] - s.r * x[s.b[1]]).norm();
+    return g.stitches.empty() ? 0 : sum / double(g.stitches.size());
+}
+
 /// One drape on its way: what the stages share.
 struct Run {
     const Staging& staging;
@@ -265,7 +271,7 @@ double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Po
     o.max_iterations = 6;
     o.exact_below = 0;
     constexpr int rounds = 60;
-    double last = std::numeric_limits<double>::infinity(), cap_scale = 1;
+    double last = std::numeric_limits<double>::infinity(), last_mean = last, cap_scale = 1;
     int locked = 0;
     for (int round = 0; round < rounds && !run.stopped; ++round) {
         o.time_step = std::min(0.02 * std::pow(2.0, round / 3), 1.0);
@@ -275,14 +281,20 @@ double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Po
         // A seam that does not pull with all it may is pulled harder.
         for (auto& s : problem.stitches)
             if (s.stiffness * gap < s.cap) s.stiffness = std::min(3 * s.stiffness, 2e4 * s.cap);
-        locked = gap > 0.995 * last ? locked + 1 : 0;
-        if (locked == 4) return gap; // pulling harder moves nothing: something is in the way
+        // One place that waits must not end what still goes on elsewhere; where pulling harder moves nothing at
+        // all, something is in the way.
+        const double mean = mean_gap(open, x);
+        locked = std::min(gap / last, mean / last_mean) > 0.995 ? locked + 1 : 0;
+        if (locked == 4) return gap;
         if (gap > 0.95 * last) {
-            if (cap_scale > 30) return gap;
-            cap_scale *= 1.5;
-            for (auto& s : problem.stitches) s.cap *= 1.5;
+            if (cap_scale > 30 && mean > 0.95 * last_mean) return gap;
+            if (cap_scale <= 30) {
+                cap_scale *= 1.5;
+                for (auto& s : problem.stitches) s.cap *= 1.5;
+            }
         }
         last = gap;
+        last_mean = mean;
     }
     return last;
 }

@@ -186,7 +186,7 @@ TEST_CASE("a skirt that is too small says so, where, and how much is missing") {
             vertex[0] = 0.9 * vertex[0].get<double>();
     write_text(folder / "small.json", pattern.dump());
     write_text(folder / "small.toile.json", R"({"toile": 1, "fabric": "poplin"})");
-    const auto report = drape({folder / "small.json", "--edge-length", "40mm", "-o", folder / "a.obj"}, 3);
+    const auto report = drape({folder / "small.json", "--edge-length", "60mm", "-o", folder / "a.obj"}, 3);
     CHECK(report["status"] == "too_small");
     CHECK_THAT(report["where"].get<std::string>(), Contains("panel \"") && Contains("cm are missing"));
     CHECK(read_garment(folder / "a.obj").x.size() == report["nodes"].get<std::size_t>());

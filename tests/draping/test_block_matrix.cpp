@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/algebra/cholesky.h"
-
+#include "geometry/parallel.h"
 
 #include <catch2/catch.hpp>
 
@@ -87,4 +87,25 @@ TEST_CASE("a matrix that is not positive definite is told by its factorisation")
     Cholesky cholesky;
     cholesky.analyse(f.sparse);
     CHECK_FALSE(cholesky.factorise(f.sparse));
+}
+
+TEST_CASE("the solver of a preconditioner does as the exact one, with the same bits for any number of threads") {
+    Filled f = filled(400);
+    Cholesky cholesky;
+    cholesky.analyse(f.sparse);
+    for (const double shift : {0.0, 5.0}) { // a new factor is not solved with the old one
+        f.sparse.add_to_diagonal(Eigen::VectorXd::Constant(1200, shift));
+        REQUIRE(cholesky.factorise(f.sparse));
+        const Eigen::VectorXd b = 1e-9 * Eigen::VectorXd::LinSpaced(1200, -1, 3);
+        Eigen::VectorXd exact, fast, again;
+        cholesky.solve(b, exact);
+        cholesky.precondition(b, fast);
+        CHECK((fast - exact).norm() < 1e-5 * exact.norm());
+        set_threads(1);
+        cholesky.precondition(b, again);
+        set_threads(0);
+        CHECK(fast == again);
+        cholesky.precondition(Eigen::VectorXd::Zero(1200), again);
+        CHECK(again == Eigen::VectorXd::Zero(1200));
+    }
 }

@@ -147,13 +147,13 @@ void ClothProblem::arrive(const Points& x) {
     contact_.prepare(x, Eigen::VectorXd::Zero(3 * points()));
     active_ = contact_.active(x);
     if (friction.coefficient == 0) return;
-    // Near rest friction only gives way where it is more than contact can answer: less than that is friction
-    // too, and forces that follow one another up and down would not come to rest. It grows only where a node would
-    // give way for want of it.
     if (trusted_) {
         take_up_friction(x);
         return;
     }
+    // Near rest friction only gives way where it is more than contact can answer: less than that is friction
+    // too, and forces that follow one another up and down would not come to rest. It grows only where a node would
+    // give way for want of it.
     near_rest_ = near_rest_ || residual_ < friction_rest;
     const bool renew = arrivals_ % renew_every == 0 || residual_ < 0.1 * renewed_at_;
     ++arrivals_;

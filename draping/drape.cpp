@@ -60,13 +60,6 @@ Points vertex_normals(const TriMesh& mesh) {
     return n;
 }
 
-double largest_gap(const Garment& g, const Points& x) {
-    double gap = 0;
-    for (const Stitch& s : g.stitches)
-        gap = std::max(gap, (x[s.a] - (1 - s.r) * x[s.b[0]] - s.r * x[s.b[1]]).norm());
-    return gap;
-}
-
 double mean_gap(const Garment& g, const Points& x) {
     double sum = 0;
     for (const Stitch& s : g.stitches) sum += (x[s.a] - (1 - s.r) * x[s.b[0]] - s.r * x[s.b[1]]).norm();
@@ -276,7 +269,7 @@ double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Po
     for (int round = 0; round < rounds && !run.stopped; ++round) {
         o.time_step = std::min(0.02 * std::pow(2.0, round / 3), 1.0);
         run.settle_some(problem, x, factor, o);
-        const double gap = largest_gap(open, x);
+        const double gap = seam_gap_max(open, x);
         if (gap < weld_gap) return gap;
         // A seam that does not pull with all it may is pulled harder.
         for (auto& s : problem.stitches)
@@ -463,7 +456,7 @@ void note_facts(Run& run, const ClothProblem& problem) {
         f.band_pull = std::max(f.band_pull, s.stiffness * strain(s, run.x));
     }
     f.inner_stitches = int(run.garment.stitches.size());
-    f.inner_gap = largest_gap(run.garment, run.x);
+    f.inner_gap = seam_gap_max(run.garment, run.x);
 }
 
 /// Brings one level to rest: softened membrane first, whose longer steps find the lower drape.

@@ -2,10 +2,10 @@
 #include "src/command_line.h"
 
 #include "draping/inspect.h"
-#include "io/read_avatar.h"
 #include "io/read_garment.h"
 #include "src/length.h"
 #include "src/options.h"
+#include "src/pipeline.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -105,11 +105,9 @@ void print(std::ostream& out, const Inspection& i) {
 
 TriMesh body_of(const InspectArguments& a, const ReadGarment& garment, std::vector<std::string>& notes) {
     if (a.avatar.empty()) return garment.avatar;
-    ReadAvatarOptions options;
-    options.repair = a.repair_avatar;
-    ReadAvatar read = read_avatar(a.avatar, options);
+    Body read = read_body(a.avatar, {}, a.repair_avatar);
     notes.insert(notes.end(), read.notes.begin(), read.notes.end());
-    return std::move(read.body);
+    return std::move(read.mesh);
 }
 
 int inspect_command(const InspectArguments& a, const Console& console) {

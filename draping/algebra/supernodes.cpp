@@ -30,7 +30,7 @@ SupernodalSolver::SupernodalSolver(const SupernodalFactor& f)
 // Cuts the elimination tree from the roots down, always its heaviest subtree, until there are enough.
 void SupernodalSolver::find_subtrees() {
     const int n = int(first_.size()) - 1;
-    std::vector<int> owner(rows_), parent(n, -1), low(n);
+    std::vector<int> owner(rows_), low(n);
     for (int s = 0; s < n; ++s)
         for (int c = first_[s]; c < first_[s + 1]; ++c) owner[c] = s;
     std::vector<double> cost(n);
@@ -45,7 +45,7 @@ void SupernodalSolver::find_subtrees() {
         }
         const int next = row_begin_[s] + first_[s + 1] - first_[s]; // first row below the diagonal block
         if (next < row_begin_[s + 1])
-            children[parent[s] = owner[row_[next]]].push_back(s);
+            children[owner[row_[next]]].push_back(s);
         else
             open.push_back(s);
     }

@@ -24,7 +24,6 @@ struct SupernodalFactor {
 
 class SupernodalSolver {
 public:
-    SupernodalSolver() = default;
     explicit SupernodalSolver(const SupernodalFactor& factor);
 
     /// x = A^-1 b to about six digits. The same bits for any number of threads.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The four garments of examples/ on the built-in form, from their files to written files.
 #include "draping/compare.h"
+#include "draping/decisions.h"
 #include "draping/inspect.h"
-#include "geometry/bvh.h"
 #include "io/read_garment.h"
 #include "src/pipeline.h"
 #include "tests/support/temp_folder.h"
@@ -29,25 +29,6 @@ TriMesh mesh_of(const ReadGarment& g) {
     return {g.x, node_triangles(g.garment)};
 }
 
-/// Share of the area whose right side, by the order of its corners, looks away from the body.
-double outside_share(const ReadGarment& g, const TriMesh& body) {
-    Vec3 axis = Vec3::Zero();
-    double outside = 0, total = 0;
-    for (const Triangle& t : node_triangles(g.garment)) {
-        const Vec3 normal = (g.x[t[1]] - g.x[t[0]]).cross(g.x[t[2]] - g.x[t[0]]) / 2;
-        const Vec3 centre = (g.x[t[0]] + g.x[t[1]] + g.x[t[2]]) / 3;
-        double nearest = std::numeric_limits<double>::infinity();
-        for (const Vec3& p : body.points)
-            if ((p - centre).squaredNorm() < nearest) {
-                nearest = (p - centre).squaredNorm();
-                axis = p;
-            }
-        total += normal.norm();
-        if (normal.dot(centre - axis) > 0) outside += normal.norm();
-    }
-    return outside / total;
-}
-
 /// What every written garment must be, by a look at the file alone.
 void check_sound(const ReadGarment& g, const TriMesh& body, const PanelFabrics& fabrics) {
     const Inspection i = inspect(g.garment, g.x, body, fabrics);
@@ -61,7 +42,7 @@ void check_sound(const ReadGarment& g, const TriMesh& body, const PanelFabrics& 
     CHECK(i.strain.warp.max <= i.strain.limit_warp);
     CHECK(i.strain.weft.max <= i.strain.limit_weft);
     CHECK(i.strain.compressed_area < 0.03);
-    CHECK(outside_share(g, body) > 0.97);
+    CHECK(right_side_out(g.garment, g.x, body) > 0.97);
 }
 
 const char* fabric_of(const std::string& name) {

@@ -223,10 +223,10 @@ void ClothProblem::multiply(const Eigen::VectorXd& v, Eigen::VectorXd& product) 
         if (pinned_[i]) product.segment<3>(3 * i) = v.segment<3>(3 * i);
 }
 
-double ClothProblem::feasible_step(const Points& x, const Eigen::VectorXd& dx) {
+double ClothProblem::feasible_step(const Points& x, const Eigen::VectorXd& dx, std::vector<double>* shares) {
     contact_.prepare(x, dx);
     active_ = contact_.active(x);
-    return contact_.feasible_step(x, dx, nullptr, &blocking_);
+    return contact_.feasible_step(x, dx, nullptr, shares ? &blocking_ : nullptr, shares);
 }
 
 double ClothProblem::residual(const Points& x, const Eigen::VectorXd& g) {

@@ -50,7 +50,7 @@ public:
 
     /// The residual of `residual()` by node, and the node at which it is largest.
     int worst_node() const { return worst_; }
-    int blocking_pair() const { return blocking_; }         ///< -1: none limited the last step
+    int blocking_pair() const { return blocking_; } ///< -1: none limited the last step asked for with shares
 
     int points() const override { return int(node_mass_.size()); }
     void arrive(const Points& x) override;
@@ -58,7 +58,7 @@ public:
     void gradient(const Points& x, Eigen::VectorXd& g) override;
     BlockMatrix& hessian(const Points& x, bool exact, bool& pattern_changed) override;
     void multiply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const override;
-    double feasible_step(const Points& x, const Eigen::VectorXd& dx) override;
+    double feasible_step(const Points& x, const Eigen::VectorXd& dx, std::vector<double>* shares = nullptr) override;
     double residual(const Points& x, const Eigen::VectorXd& g) override;
     const Eigen::VectorXd& mass() const override { return mass_; }
     const std::vector<char>& pinned() const override { return pinned_; }

@@ -16,7 +16,7 @@ struct Cholesky::Impl {
     cholmod_common common;
     cholmod_factor* factor = nullptr;
     std::vector<int> order; ///< of points
-    std::optional<SupernodalSolver> supernodes; ///< of the present factor, once asked for
+    std::optional<SupernodalCholesky> single; ///< in single precision
     cholmod_dense *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
 
     Impl() {
@@ -90,11 +90,11 @@ void Cholesky::analyse(const BlockMatrix& a, bool keep_order) {
     cholmod_sparse s = Impl::view(a);
     m.factor = cholmod_analyze_p(&s, scalar_order.data(), nullptr, 0, &m.common);
     if (!m.factor) throw std::runtime_error("CHOLMOD could not analyse the stiffness matrix");
+    m.single.reset();
 }
 
 bool Cholesky::factorise(const BlockMatrix& a) {
     Impl& m = *impl_;
-    m.supernodes.reset();
     cholmod_sparse s = Impl::view(a);
     cholmod_factorize(&s, m.factor, &m.common);
     if (m.common.status == CHOLMOD_OUT_OF_MEMORY || m.common.status == CHOLMOD_TOO_LARGE)
@@ -114,23 +114,27 @@ void Cholesky::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
     x = Eigen::Map<Eigen::VectorXd>(static_cast<double*>(m.solution->x), b.size());
 }
 
-void Cholesky::precondition(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+bool Cholesky::factorise_preconditioner(const BlockMatrix& a) {
     Impl& m = *impl_;
-    if (!m.supernodes) {
+    if (!m.single) {
         const cholmod_factor& f = *m.factor;
-        SupernodalFactor view;
-        view.rows = int(f.n);
-        view.count = int(f.nsuper);
-        view.first = static_cast<const int*>(f.super);
-        view.row_begin = static_cast<const int*>(f.pi);
-        view.value_begin = static_cast<const int*>(f.px);
-        view.row = static_cast<const int*>(f.s);
-        view.value = static_cast<const double*>(f.x);
-        view.order = static_cast<const int*>(f.Perm);
-        m.supernodes.emplace(view);
+        SupernodalPattern pattern;
+        pattern.rows = int(f.n);
+        pattern.count = int(f.nsuper);
+        pattern.first = static_cast<const int*>(f.super);
+        pattern.row_begin = static_cast<const int*>(f.pi);
+        pattern.value_begin = static_cast<const int*>(f.px);
+        pattern.row = static_cast<const int*>(f.s);
+        pattern.order = static_cast<const int*>(f.Perm);
+        m.single.emplace(pattern, a);
     }
-    m.supernodes->solve(b, x);
+    if (m.single->factorise(a)) return true;
+    if (!factorise(a)) return false;
+    m.single->take(static_cast<const double*>(m.factor->x));
+    return true;
 }
+
+void Cholesky::precondition(const Eigen::VectorXd& b, Eigen::VectorXd& x) { impl_->single->solve(b, x); }
 
 std::string blas_name() { return std::string(openblas_get_config()) + ", core " + openblas_get_corename(); }
 

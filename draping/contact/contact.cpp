@@ -12,7 +12,7 @@ namespace toile {
 
 namespace {
 
-constexpr double keep_of_gap = 0.1;       // a step leaves at least this share of every gap
+constexpr double keep_of_gap = 0.2;       // a step leaves at least this share of every gap
 constexpr double least_slack = 0.0015;    // m; a list serves at least for motions of this size
 constexpr double slack_per_step = 3;      // and for this many steps of the present size
 constexpr int query_chunk = 64;
@@ -359,7 +359,8 @@ void Contact::couplings(const std::vector<ActivePair>& active, std::vector<std::
         if (p.built < 2 * p.distance) couple(p);
 }
 
-double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx, int* blocking) const {
+double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx, int* blocking,
+                              std::vector<double>* shares) const {
     const std::vector<double> distance = moved_since_built(x);
     std::vector<double> step(nodes_ + body_.size(), 0.0);
     for (int i = 0; i < nodes_; ++i) step[i] = dx.segment<3>(3 * i).norm();
@@ -371,7 +372,8 @@ double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const 
     };
 
     const int n = int(pairs_.size()), chunk = 1024, chunks = (n + chunk - 1) / chunk;
-    std::vector<std::pair<double, int>> first(chunks, {1.0, -1});
+    using Limit = std::pair<double, int>; // share of the step, and the pair that allows no more
+    std::vector<std::vector<Limit>> limits(chunks);
     parallel_for(chunks, 1, [&](int begin, int end) {
         for (int c = begin; c < end; ++c)
             for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
@@ -387,12 +389,18 @@ double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const 
                 options.min_distance = b.floor;
                 const double t = p.edge_edge ? time_of_impact_edge_edge(m, options)
                                              : time_of_impact_point_triangle(m, options);
-                if (t < first[c].first) first[c] = {t, i};
+                if (t < 1) limits[c].emplace_back(t, i);
             }
     });
-    std::pair<double, int> least{1.0, -1};
-    for (const auto& f : first)
-        if (f.first < least.first) least = f;
+    Limit least{1.0, -1};
+    if (shares) shares->assign(nodes_, 1.0);
+    for (const auto& found : limits)
+        for (const auto& [t, i] : found) {
+            if (t < least.first) least = {t, i};
+            if (!shares) continue;
+            for (const int k : pairs_[i].p)
+                if (k < nodes_) (*shares)[k] = std::min((*shares)[k], t);
+        }
     if (blocking) *blocking = least.second;
     return least.first;
 }

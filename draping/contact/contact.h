@@ -82,9 +82,10 @@ public:
     void couplings(const std::vector<ActivePair>& active, std::vector<std::pair<int, int>>& pairs) const;
 
     /// Largest t in [0, 1] for which no pair passes its floor between x and x + t dx (and body + t body_dx).
-    /// `blocking`, when given, receives the pair that limits t, -1 when none.
+    /// `blocking`, when given, receives the pair that limits t, -1 when none, and `shares` the least such t of each
+    /// node's own pairs.
     double feasible_step(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx = nullptr,
-                         int* blocking = nullptr) const;
+                         int* blocking = nullptr, std::vector<double>* shares = nullptr) const;
 
     /// Force of the body's barrier on every node, N.
     Points body_forces(const std::vector<ActivePair>& active) const;

@@ -25,8 +25,10 @@ struct Problem {
     /// matrix leaves out for the sake of a cheap factor.
     virtual void multiply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const = 0;
 
-    /// Largest t in [0, 1] for which x .. x + t dx stays feasible.
-    virtual double feasible_step(const Points& x, const Eigen::VectorXd& dx) = 0;
+    /// Largest t in [0, 1] for which x .. x + t dx stays feasible. `shares`, when given, receives the same for each
+    /// point as far as it is itself in the way, 1 for most: a hint, since points that go different shares of
+    /// their ways may meet others.
+    virtual double feasible_step(const Points& x, const Eigen::VectorXd& dx, std::vector<double>* shares = nullptr) = 0;
 
     virtual double residual(const Points& x, const Eigen::VectorXd& g) = 0; ///< dimensionless size of the gradient
     virtual const Eigen::VectorXd& mass() const = 0;     ///< kg per scalar unknown

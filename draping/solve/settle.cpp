@@ -10,13 +10,15 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr int direct_below = 1500; // points: a factorisation is cheaper than keeping one
-constexpr int cg_patience = 12;    // iterations after which a kept factor is too old
+constexpr int direct_below = 300;  // points: a factorisation is cheaper than keeping one
+constexpr int cg_patience = 6;     // iterations after which a kept factor is too old
 constexpr double cg_tolerance = 0.1;
 constexpr int tail_cg_limit = 60;
 constexpr double tail_patience = 10;
 constexpr double first_radius = 2; // steps of the projected matrix, which is too stiff by such a factor
 constexpr int old_factor_cg = 25;  // CG iterations after which the factor is renewed
+constexpr double worth_parting = 0.9; // share of a step below which every point goes as far as it can by itself
+constexpr double sufficient = 1e-4;   // of the decrease that the slope promises
 constexpr double tail_time_step = 1; // s: before that the state is still travelling, however small the forces
 
 double longest(const VectorXd& dx) {
@@ -42,10 +44,16 @@ struct Run {
         factored = false;
     }
 
-    bool factorise(const BlockMatrix& h) {
+    bool factorise_preconditioner(const BlockMatrix& h) {
         ++result.factorisations;
-        factored = factor.factorise(h);
-        return factored;
+        return factored = factor.factorise_preconditioner(h);
+    }
+
+    bool solve_directly(const BlockMatrix& h, const VectorXd& g, VectorXd& dx) {
+        ++result.factorisations;
+        if (!factor.factorise(h)) return false;
+        factor.solve(-g, dx);
+        return true;
     }
 
     /// Solves h dx = -g by conjugate gradients preconditioned with the kept factor. False when it takes too long.
@@ -73,11 +81,34 @@ struct Run {
         return false;
     }
 
-    bool direction(BlockMatrix& h, const VectorXd& g, VectorXd& dx) {
-        if (factored && problem.points() >= direct_below && solve_with_kept(h, g, dx)) return true;
-        if (!factorise(h)) return false;
-        factor.solve(-g, dx);
-        return true;
+    bool direction(const BlockMatrix& h, const VectorXd& g, VectorXd& dx) {
+        if (problem.points() < direct_below) return solve_directly(h, g, dx);
+        if (factored && solve_with_kept(h, g, dx)) return true;
+        if (!factorise_preconditioner(h)) return false;
+        return solve_with_kept(h, g, dx) || solve_directly(h, g, dx);
+    }
+
+    /// One pair in the way need not hold up all the cloth: lets every point go its own share of the way. Returns the
+    /// share of the new dx that is feasible, or 0 and dx as it was when going t of the whole is as good.
+    double part(const Points& x, const VectorXd& g, const std::vector<double>& shares, double t, VectorXd& dx) {
+        VectorXd parted = dx;
+        for (std::size_t i = 0; i < shares.size(); ++i) parted.segment<3>(3 * i) *= shares[i];
+        const double slope = g.dot(parted);
+        if (!(slope < 0)) return 0;
+        const auto value_at = [&](const VectorXd& d, double share) {
+            Points trial = x;
+            move(trial, d, share);
+            return problem.value(trial);
+        };
+        double feasible = problem.feasible_step(x, parted);
+        const double whole = value_at(dx, t);
+        for (int cut = 0; cut < 3; ++cut, feasible *= 0.5) {
+            const double value = value_at(parted, feasible);
+            if (value >= whole || value > result.energy + sufficient * feasible * slope) continue;
+            dx = std::move(parted);
+            return feasible;
+        }
+        return 0;
     }
 
     /// Minimises g.d + d.H d / 2 within |d| <= radius, in the norm of the kept factor. Returns whether the
@@ -129,6 +160,7 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
     double radius = 0; // of the trust region, 0 while not in the tail
     int failures = 0;
     bool still = false, tail = false, stale = false;
+    std::vector<double> shares;
 
     problem.arrive(x);
     for (;; ++result.iterations) {
@@ -150,7 +182,7 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
 
         // Once in the tail a passing rise of the residual is no reason to leave it.
         const double exact_below = (tail ? tail_patience : 1) * options.exact_below;
-        tail = result.residual < exact_below && run.factored && h > tail_time_step;
+        tail = result.residual < exact_below && run.analysed && h > tail_time_step;
         if (!tail) radius = 0;
         bool pattern_changed = false, boundary = false;
         int cg = 0;
@@ -167,9 +199,9 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
             if (!m || pattern_changed) { // the factor of the projected matrix is the norm of the trust region
                 m = &prepared(false);
                 run.analyse_if(pattern_changed, *m);
-                solved = run.factorise(*m);
+                solved = run.factorise_preconditioner(*m);
                 if (solved && radius == 0) {
-                    factor.solve(-g, dx);
+                    factor.precondition(-g, dx);
                     radius = first_radius * std::sqrt(-g.dot(dx));
                 }
                 m = &prepared(true);
@@ -194,12 +226,14 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
 
         const double reach = longest(dx);
         if (reach > options.max_step) dx *= options.max_step / reach;
+        double t = problem.feasible_step(x, dx, &shares);
+        if (t < worth_parting)
+            if (const double own = run.part(x, g, shares, t, dx); own > 0) t = own;
+        const double feasible = t;
         const double slope = g.dot(dx);
         problem.multiply(dx, hdx);
         const double bend = dx.dot(hdx);
 
-        double t = problem.feasible_step(x, dx);
-        const double feasible = t;
         double actual = 0, predicted = 0;
         bool accepted = false;
         for (int cut = 0; cut < 12 && t > 1e-12; ++cut) {
@@ -209,7 +243,7 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
             const double value = problem.value(trial);
             actual = result.energy - value;
             const double noise = 1e-13 * (1 + std::abs(result.energy));
-            if (actual >= 1e-4 * -t * slope || (predicted < noise && actual > -noise)) {
+            if (actual >= sufficient * -t * slope || (predicted < noise && actual > -noise)) {
                 x = std::move(trial);
                 accepted = true;
                 break;

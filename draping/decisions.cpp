@@ -130,6 +130,9 @@ std::vector<std::string> decisions(const DrapeFacts& f, const Garment& g, const 
                                    const PanelFabrics& fabrics, const TriMesh& body) {
     std::vector<std::string> out{level_sentence(f), contact_sentence(f), friction_sentence(f, g.node_count),
                                  growth_sentence(f)};
+    if (f.untangled > 0)
+        out.push_back(text("where cloth crossed itself after sewing or on a finer mesh, it was taken apart before contact "
+                           "took over: at most %d crossings on a level", f.untangled));
     for (const HookFacts& h : f.hooks)
         out.push_back(hook_sentence(h));
     if (f.hooks.empty())

@@ -2,6 +2,7 @@
 #include "draping/drape.h"
 
 #include "draping/cloth.h"
+#include "draping/contact/untangle.h"
 #include "draping/decisions.h"
 #include "draping/hooks.h"
 #include "draping/solve/settle.h"
@@ -422,6 +423,20 @@ void clear_of_body(Run& run, ClothProblem& problem, Cholesky& factor) {
     problem.contact().set_options(final);
 }
 
+/// Cloth that crosses itself after sewing, or only on the finer mesh, is taken apart before contact takes over.
+/// Returns whether nothing crosses and nothing is too near.
+bool take_apart(Run& run, Contact& contact) {
+    const ContactCloth cloth = contact_cloth(run.garment);
+    const TangledCloth tangled{cloth.triangles, run.garment.edges, run.edge_length(), cloth.sewn_to_edge};
+    for (int round = 0; round < 10; ++round) {
+        const Untangled u = untangle(tangled, run.x);
+        run.facts.untangled = std::max(run.facts.untangled, u.before);
+        if (u.after > 0) return false;
+        if (contact.widen(run.x) == 0 && find_crossings(tangled, run.x).empty()) return true;
+    }
+    return false;
+}
+
 /// Says where a drape that has not converged is held up: too little cloth, what blocks the step, or the worst force.
 void note_where(Run& run, const ClothProblem& problem, const SettleResult& r) {
     std::string& where = run.result.where;
@@ -473,6 +488,11 @@ void settle_level(Run& run) {
     run.begin("settle", 0.85 * std::pow(4.0, run.level) / ((std::pow(4.0, run.levels()) - 1) / 3));
     problem.rest_here(run.x, run.result.friction, run.facts.restarted);
     problem.sheet().softness = run.facts.restarted ? 1 : first ? 1.0 / 16 : 1.0 / 4;
+    if (!take_apart(run, problem.contact())) { // a finer mesh may yet come apart
+        ContactOptions alone = contact;
+        alone.self = false;
+        problem.contact().set_options(alone);
+    }
     clear_of_body(run, problem, factor);
     run.stage = "settle";
 
@@ -552,6 +572,10 @@ void prove(Run& run) {
     run.result.status = DrapeStatus::stalled;
     run.result.where = text("%d triangle pairs of cloth and body and %d of cloth and cloth cross", n.cloth_avatar,
                             n.cloth_cloth);
+    const ContactCloth cloth = contact_cloth(run.garment);
+    const std::vector<Crossing> own =
+        find_crossings({cloth.triangles, run.garment.edges, run.edge_length(), cloth.sewn_to_edge}, run.x);
+    if (!own.empty()) run.result.where += ", the first on " + place_of_triangle(run.garment, run.x, own[0].triangle);
 }
 
 /// The report's sentences on what was modelled.

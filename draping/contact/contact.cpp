@@ -417,6 +417,26 @@ Points Contact::body_forces(const std::vector<ActivePair>& active) const {
     return force;
 }
 
+int Contact::widen(Points& x) {
+    constexpr int sweeps = 30;
+    int near = 1;
+    for (int sweep = 0; sweep < sweeps && near > 0; ++sweep) {
+        if (sweep % 10 == 0) violations(x); // makes a new list
+        near = 0;
+        for (const ContactPair& p : pairs_) {
+            if (p.with_body) continue;
+            const double room = 2 * barrier(p).floor;
+            const PairGeometry g = pair_geometry(corners(x, p), p.edge_edge);
+            if (g.d >= room) continue;
+            near += g.d <= barrier(p).floor;
+            double squares = 0;
+            for (const double w : g.weight) squares += w * w;
+            for (int k = 0; k < 4; ++k) x[p.p[k]] += g.weight[k] / squares * (1.1 * room - g.d) * g.normal;
+        }
+    }
+    return near;
+}
+
 int Contact::violations(const Points& x) {
     built_ = false;
     prepare(x, Eigen::VectorXd::Zero(3 * nodes_));

@@ -93,6 +93,10 @@ public:
     /// Pairs nearer than their floor, or touching: 0 for a start that the barrier can take.
     int violations(const Points& x);
 
+    /// Moves nodes of cloth that lie too near each other apart, to twice their floor; returns how many pairs still
+    /// are too near. For a start that the barrier cannot take but that crosses nothing.
+    int widen(Points& x);
+
     const ContactPair& pair(int i) const { return pairs_[i]; }
     int node_count() const { return nodes_; }
 

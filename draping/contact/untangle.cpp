@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/contact/untangle.h"
+
+#include "geometry/bvh.h"
+#include "geometry/parallel.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <set>
+
+namespace toile {
+
+namespace {
+
+constexpr double longest_step = 0.4; // of the edge length, in one round
+constexpr int spread = 8;            // rounds of averaging with the neighbours
+constexpr double straight = 0.2;     // length of the summed directions below which a contour counts as straight
+
+Vec3 normal_of(const Points& x, const Triangle& t) { return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]); }
+
+/// Where the segment a b passes through the triangle, as {along, u, v, w}; false when it does not.
+bool crosses(const Points& x, const std::array<int, 2>& e, const Triangle& t, double& along, Vec3& corner) {
+    const Vec3 normal = normal_of(x, t), direction = x[e[1]] - x[e[0]];
+    const double closing = normal.dot(direction);
+    if (closing == 0) return false;
+    along = normal.dot(x[t[0]] - x[e[0]]) / closing;
+    if (!(along >= 0 && along <= 1)) return false;
+    const Vec3 p = x[e[0]] + along * direction;
+    for (int k = 0; k < 3; ++k)
+        corner[k] = normal.dot((x[t[(k + 1) % 3]] - p).cross(x[t[(k + 2) % 3]] - p)) / normal.squaredNorm();
+    return corner.minCoeff() >= 0;
+}
+
+/// Sum over the triangles at the edge of the unit directions in which the crossing goes on from the edge into each.
+Vec3 contour_direction(const TangledCloth& cloth, const Points& x, const Crossing& c, const Vec3& normal) {
+    const auto& ends = cloth.edges.ends[c.edge];
+    const Vec3 edge = (x[ends[1]] - x[ends[0]]).normalized();
+    Vec3 sum = Vec3::Zero();
+    for (int k = cloth.edges.first[c.edge]; k < cloth.edges.first[c.edge + 1]; ++k) {
+        const Triangle& t = cloth.triangles[cloth.edges.incident[k]];
+        const int opposite = *std::find_if(t.begin(), t.end(), [&](int i) { return i != ends[0] && i != ends[1]; });
+        const Vec3 along = normal.cross(normal_of(x, t));
+        if (!(along.squaredNorm() > 0)) continue;
+        const Vec3 arm = x[opposite] - x[ends[0]], inward = arm - arm.dot(edge) * edge;
+        sum += (along.dot(inward) < 0 ? -1.0 : 1.0) * along.normalized();
+    }
+    return sum;
+}
+
+/// Halfway to the mean of the neighbours: cloth round a crossing comes along, or it would be crumpled.
+Points averaged(const TangledCloth& cloth, const Points& v) {
+    Points sum(v.size(), Vec3::Zero());
+    std::vector<int> count(v.size(), 0);
+    for (const auto& [a, b] : cloth.edges.ends) {
+        sum[a] += v[b], sum[b] += v[a];
+        ++count[a], ++count[b];
+    }
+    for (std::size_t i = 0; i < v.size(); ++i) sum[i] = count[i] > 0 ? Vec3((v[i] + sum[i] / count[i]) / 2) : v[i];
+    return sum;
+}
+
+} // namespace
+
+std::vector<Crossing> find_crossings(const TangledCloth& cloth, const Points& x) {
+    const Bvh tree(triangle_boxes(x, cloth.triangles, 0));
+    std::set<std::array<int, 2>> sewn;
+    for (const auto& [node, end0, end1] : cloth.sewn_to_edge)
+        for (const int end : {end0, end1}) sewn.insert({std::min(node, end), std::max(node, end)});
+    const auto joined = [&](int a, int b) {
+        return a == b || (!sewn.empty() && sewn.count({std::min(a, b), std::max(a, b)}) > 0);
+    };
+    const int edges = cloth.edges.size(), chunk = 128;
+    std::vector<std::vector<Crossing>> found(chunk_count(edges, chunk));
+    parallel_for(edges, chunk, [&](int begin, int end) {
+        for (int e = begin; e < end; ++e) {
+            const auto& ends = cloth.edges.ends[e];
+            Box box(x[ends[0]]);
+            box.extend(x[ends[1]]);
+            const std::size_t first = found[begin / chunk].size();
+            tree.overlapping(box, [&](int t) {
+                const Triangle& k = cloth.triangles[t];
+                if (std::any_of(k.begin(), k.end(), [&](int i) { return joined(i, ends[0]) || joined(i, ends[1]); })) return;
+                Crossing c{e, t, 0, Vec3::Zero()};
+                if (crosses(x, ends, k, c.along, c.corner)) found[begin / chunk].push_back(c);
+            });
+            std::sort(found[begin / chunk].begin() + first, found[begin / chunk].end(),
+                      [](const Crossing& a, const Crossing& b) { return a.triangle < b.triangle; });
+        }
+    });
+    std::vector<Crossing> all;
+    for (const auto& f : found) all.insert(all.end(), f.begin(), f.end());
+    return all;
+}
+
+Untangled untangle(const TangledCloth& cloth, Points& x, int max_rounds) {
+    Untangled result;
+    for (;; ++result.rounds) {
+        const std::vector<Crossing> crossings = find_crossings(cloth, x);
+        result.after = int(crossings.size());
+        if (result.rounds == 0) result.before = result.after;
+        if (crossings.empty() || result.rounds == max_rounds) return result;
+        Points step(x.size(), Vec3::Zero());
+        std::vector<double> weight(x.size(), 0.0);
+        for (const Crossing& c : crossings) {
+            const auto& ends = cloth.edges.ends[c.edge];
+            const Triangle& t = cloth.triangles[c.triangle];
+            const Vec3 normal = normal_of(x, t).normalized(), edge = (x[ends[1]] - x[ends[0]]).normalized();
+            const Vec3 r = contour_direction(cloth, x, c, normal);
+            Vec3 g = r - 2 * edge.dot(r) / edge.dot(normal) * normal;
+            if (!(g.norm() > 0) || !g.allFinite()) continue;
+            g *= longest_step * cloth.edge_length * std::min(1.0, r.norm() / straight) / g.norm();
+            const auto add = [&](int node, double share, double sign) {
+                step[node] += sign * share * g;
+                weight[node] += share;
+            };
+            add(ends[0], 1 - c.along, 0.5);
+            add(ends[1], c.along, 0.5);
+            for (int k = 0; k < 3; ++k) add(t[k], c.corner[k], -0.5);
+        }
+        for (std::size_t i = 0; i < x.size(); ++i)
+            if (weight[i] > 0) step[i] /= std::max(weight[i], 0.5);
+        for (int k = 0; k < spread; ++k) step = averaged(cloth, step);
+        for (std::size_t i = 0; i < x.size(); ++i) x[i] += step[i];
+    }
+}
+
+} // namespace toile

@@ -163,12 +163,14 @@ struct Run {
     }
 };
 
-/// Hooks with no more than twice the garment's weight in all.
+/// Hooks with no more than twice the garment's weight in all, or what its open seams pull with.
 std::vector<HookSpring> hooks_on(const Run& run, const Garment& g, const std::vector<std::string>& labels,
                                  const ClothProblem& problem) {
     std::map<std::string, double> heights;
     for (const std::string& label : labels) heights[label] = run.carried_at.at(label);
-    return make_hooks(g, heights, 2 * 9.81 * total(problem.node_mass()));
+    double strength = 2 * 9.81 * total(problem.node_mass());
+    for (const Stitch& s : g.stitches) strength += seam_pull * s.length;
+    return make_hooks(g, heights, strength);
 }
 
 std::vector<std::string> all_hooked(const Run& run) {

@@ -5,6 +5,7 @@
 #include "draping/contact/untangle.h"
 #include "draping/decisions.h"
 #include "draping/hooks.h"
+#include "draping/place.h"
 #include "draping/solve/settle.h"
 #include "draping/where.h"
 
@@ -308,15 +309,32 @@ void note_open_seam(Run& run, const Garment& open, const ClothProblem& problem, 
                                  100 * missing);
 }
 
+PlaceOptions place_options(const Run& run) {
+    PlaceOptions o;
+    o.fixed.assign(run.staging.levels[0].garment.panel_names.size(), false);
+    for (const Pin& pin : run.staging.pins) o.fixed[pin.span.panel] = true;
+    return o;
+}
+
+void note_pushes(Run& run, const PlacedClear& placed) {
+    const std::vector<std::string>& names = run.staging.levels[0].garment.panel_names;
+    for (const PanelPush& p : placed.pushed)
+        run.result.decisions.push_back(text("panel \"%s\" was moved %.0f mm out of %s before sewing",
+                                            names[p.panel].c_str(), 1e3 * p.push.norm(),
+                                            p.from_body ? "the body" : "another panel"));
+}
+
 /// Places and sews the coarsest level. The cloth may pass through itself on the way when it cannot close
 /// otherwise; what counts is that the sewn garment does not cross itself.
 void sew_coarsest(Run& run) {
     const auto start = Clock::now();
     const StagedLevel& staged = run.staging.levels[0];
     const Garment& open = staged.garment;
-    const Points& placed = staged.placed;
     run.result.levels.push_back({staged.edge_length, int(open.uv.size()), 0, 0, 0});
     run.begin("sew", 0.15);
+    const PlacedClear clear = place_clear(open, staged.placed, run.body, place_options(run));
+    note_pushes(run, clear);
+    const Points& placed = clear.x;
 
     std::vector<int> map;
     run.garment = close_seams(open, &map);

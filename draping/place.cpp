@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/place.h"
+
+#include "geometry/bvh.h"
+#include "geometry/distance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <tuple>
+
+namespace toile {
+
+namespace {
+
+constexpr double no_length = 1e-6; // m, below which a stitch is closed
+
+using Corners = std::array<Vec3, 3>;
+
+Corners corners_of(const Points& x, const Triangle& t) { return {x[t[0]], x[t[1]], x[t[2]]}; }
+
+/// Whether the segment from a to b passes through the triangle.
+bool pierces(const Vec3& a, const Vec3& b, const Corners& t) {
+    const Vec3 u = t[1] - t[0], v = t[2] - t[0], d = b - a, p = d.cross(v);
+    const double det = u.dot(p);
+    if (det == 0) return false;
+    const Vec3 to = a - t[0], q = to.cross(u);
+    const double r = to.dot(p) / det, s = d.dot(q) / det, at = v.dot(q) / det;
+    return r >= 0 && s >= 0 && r + s <= 1 && at >= 0 && at <= 1;
+}
+
+/// Whether two triangles cross or are nearer than `distance`.
+bool nearer_than(const Corners& a, const Corners& b, double distance) {
+    const double limit = distance * distance;
+    for (int i = 0; i < 3; ++i) {
+        if (nearest_point_triangle(a[i], b[0], b[1], b[2]).squared < limit) return true;
+        if (nearest_point_triangle(b[i], a[0], a[1], a[2]).squared < limit) return true;
+        for (int j = 0; j < 3; ++j)
+            if (nearest_edge_edge(a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]).squared < limit) return true;
+        if (pierces(a[i], a[(i + 1) % 3], b) || pierces(b[i], b[(i + 1) % 3], a)) return true;
+    }
+    return false;
+}
+
+double distance_to(const Vec3& p, const Corners& t) {
+    return nearest_point_triangle(p, t[0], t[1], t[2]).squared;
+}
+
+/// Panels that share nodes, which move together: one panel each, unless seams are closed already.
+struct Piece {
+    std::vector<int> panels;    ///< ascending
+    std::vector<int> triangles; ///< of the garment
+    std::vector<int> nodes;     ///< ascending
+    Vec3 normal = Vec3::Zero(), middle = Vec3::Zero();
+    Vec3 push = Vec3::Zero();
+    Bvh tree;                   ///< of its triangles where the file puts them
+    bool placed = false;
+};
+
+struct Placing {
+    const Garment& garment;
+    const Points& x;
+    const TriMesh& body;
+    const PlaceOptions& options;
+    std::vector<Piece> pieces = {};
+    Bvh body_tree = {};
+    std::vector<int> group = {};  ///< of a node: nodes that stitches of no length join
+    std::vector<double> reach = {}; ///< m, of a node: smallest altitude of the triangles round it
+    std::vector<std::vector<int>> ring = {}; ///< groups next to a group, sorted
+
+    Corners corners(int t, const Vec3& push) const {
+        Corners c = corners_of(x, garment.nodes(t));
+        for (Vec3& p : c) p += push;
+        return c;
+    }
+
+    Box box(int t, const Vec3& push, double margin) const {
+        Box b;
+        for (const Vec3& p : corners(t, push)) b.extend(p);
+        b.min().array() -= margin;
+        b.max().array() += margin;
+        return b;
+    }
+};
+
+void find_groups(Placing& p) {
+    const Garment& g = p.garment;
+    p.group.resize(g.node_count);
+    std::iota(p.group.begin(), p.group.end(), 0);
+    const auto root = [&](int i) {
+        while (p.group[i] != i) i = p.group[i];
+        return i;
+    };
+    for (const Stitch& s : g.stitches) {
+        if (s.r != 0 || (p.x[s.a] - p.x[s.b[0]]).norm() > no_length) continue;
+        const int a = root(s.a), b = root(s.b[0]);
+        p.group[std::max(a, b)] = std::min(a, b);
+    }
+    for (int& i : p.group) i = root(i);
+    p.ring.resize(g.node_count);
+    for (const auto& [a, b] : g.edges.ends) {
+        p.ring[p.group[a]].push_back(p.group[b]);
+        p.ring[p.group[b]].push_back(p.group[a]);
+    }
+    for (auto& ring : p.ring) std::sort(ring.begin(), ring.end());
+}
+
+void find_reach(Placing& p) {
+    p.reach.assign(p.garment.node_count, std::numeric_limits<double>::infinity());
+    for (int t = 0; t < int(p.garment.triangles.size()); ++t) {
+        const Corners c = p.corners(t, Vec3::Zero());
+        const double doubled = (c[1] - c[0]).cross(c[2] - c[0]).norm();
+        const double longest = std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
+        for (int i : p.garment.nodes(t)) p.reach[i] = std::min(p.reach[i], longest > 0 ? doubled / longest : 0);
+    }
+}
+
+/// What two triangles of different panels must keep between them: less where stitches of no length hold the panels
+/// together and neither has been moved against the other, nothing where the triangles share such a stitch.
+double wanted_distance(const Placing& p, int s, int t) {
+    double wanted = p.options.from_cloth;
+    for (int i : p.garment.nodes(s))
+        for (int j : p.garment.nodes(t)) {
+            if (p.group[i] == p.group[j]) return 0;
+            const auto& ring = p.ring[p.group[i]];
+            if (std::binary_search(ring.begin(), ring.end(), p.group[j]))
+                wanted = std::min({wanted, 0.5 * p.reach[i], 0.5 * p.reach[j]});
+        }
+    return wanted;
+}
+
+/// Numbers in the order of their first panels.
+std::vector<int> pieces_of_panels(const Garment& g) {
+    std::vector<int> root(g.panel_names.size()), first(g.node_count, -1);
+    std::iota(root.begin(), root.end(), 0);
+    const auto find = [&](int i) {
+        while (root[i] != i) i = root[i];
+        return i;
+    };
+    for (std::size_t v = 0; v < g.node_of_vertex.size(); ++v) {
+        int& other = first[g.node_of_vertex[v]];
+        if (other < 0) other = g.panel_of_vertex[v];
+        const int a = find(other), b = find(g.panel_of_vertex[v]);
+        root[std::max(a, b)] = std::min(a, b);
+    }
+    std::vector<int> number(root.size());
+    int count = 0;
+    for (int i = 0; i < int(root.size()); ++i) number[i] = root[i] == i ? count++ : number[find(i)];
+    return number;
+}
+
+void collect_pieces(Placing& p) {
+    const Garment& g = p.garment;
+    const std::vector<int> piece_of = pieces_of_panels(g);
+    for (int i = 0; i < int(piece_of.size()); ++i) {
+        if (piece_of[i] == int(p.pieces.size())) p.pieces.emplace_back();
+        p.pieces[piece_of[i]].panels.push_back(i);
+    }
+    for (int t = 0; t < int(g.triangles.size()); ++t) p.pieces[piece_of[g.panel_of_triangle[t]]].triangles.push_back(t);
+    for (Piece& piece : p.pieces) {
+        double area = 0;
+        std::vector<Box> boxes;
+        for (int t : piece.triangles) {
+            const Corners c = p.corners(t, Vec3::Zero());
+            const Vec3 n = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]);
+            piece.normal += n;
+            piece.middle += n.norm() * (c[0] + c[1] + c[2]) / 3;
+            area += n.norm();
+            boxes.push_back(p.box(t, Vec3::Zero(), 0));
+            for (int i : g.nodes(t)) piece.nodes.push_back(i);
+        }
+        if (area > 0) piece.middle /= area;
+        if (piece.normal.norm() > 0) piece.normal.normalize();
+        std::sort(piece.nodes.begin(), piece.nodes.end());
+        piece.nodes.erase(std::unique(piece.nodes.begin(), piece.nodes.end()), piece.nodes.end());
+        piece.tree = Bvh(boxes);
+    }
+}
+
+/// Turns that the body's surface takes round a point, by where a ray upward leaves and enters it.
+bool inside_body(const Placing& p, const Vec3& at) {
+    if (p.body_tree.size() == 0) return false;
+    Vec3 end = at;
+    end.y() = p.body_tree.bounds().max().y() + 1;
+    Box ray;
+    ray.extend(at);
+    ray.extend(end);
+    int turns = 0;
+    p.body_tree.overlapping(ray, [&](int t) {
+        const Corners c = corners_of(p.body.points, p.body.triangles[t]);
+        if (pierces(at, end, c)) turns += (c[1] - c[0]).cross(c[2] - c[0]).y() > 0 ? 1 : -1;
+    });
+    return turns != 0;
+}
+
+bool near_body(const Placing& p, const Piece& piece, const Vec3& push) {
+    if (p.body_tree.size() == 0) return false;
+    for (int t : piece.triangles) {
+        bool near = false;
+        const Corners c = p.corners(t, push);
+        p.body_tree.overlapping(p.box(t, push, p.options.from_body), [&](int s) {
+            near = near || nearer_than(c, corners_of(p.body.points, p.body.triangles[s]), p.options.from_body);
+        });
+        if (near) return true;
+    }
+    return !piece.nodes.empty() && inside_body(p, p.x[piece.nodes[0]] + push);
+}
+
+bool near_cloth(const Placing& p, const Piece& piece, const Vec3& push) {
+    for (const Piece& other : p.pieces) {
+        if (!other.placed || &other == &piece) continue;
+        const Vec3 relative = push - other.push;
+        const bool together = relative.norm() < no_length;
+        for (int t : piece.triangles) {
+            bool near = false;
+            const Corners c = p.corners(t, relative);
+            other.tree.overlapping(p.box(t, relative, p.options.from_cloth), [&](int k) {
+                if (near) return;
+                const int s = other.triangles[k];
+                const double wanted = together ? wanted_distance(p, s, t) : p.options.from_cloth;
+                near = wanted > 0 && nearer_than(c, p.corners(s, Vec3::Zero()), wanted);
+            });
+            if (near) return true;
+        }
+    }
+    return false;
+}
+
+bool clear(const Placing& p, const Piece& piece, const Vec3& push) {
+    return !near_cloth(p, piece, push) && !near_body(p, piece, push);
+}
+
+/// Distance from a panel's nodes to the body; negative by how deep its deepest node lies inside.
+double distance_from_body(const Placing& p, const Piece& piece) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int i : piece.nodes) {
+        double limit = std::numeric_limits<double>::infinity();
+        const auto squared = [&](int t) {
+            return distance_to(p.x[i], corners_of(p.body.points, p.body.triangles[t]));
+        };
+        if (p.body_tree.nearest(p.x[i], limit, squared) < 0) return nearest;
+        nearest = std::min(nearest, inside_body(p, p.x[i]) ? -std::sqrt(limit) : std::sqrt(limit));
+    }
+    return nearest;
+}
+
+bool fixed(const Placing& p, const Piece& piece) {
+    return !p.options.fixed.empty() &&
+           std::any_of(piece.panels.begin(), piece.panels.end(), [&](int i) { return bool(p.options.fixed[i]); });
+}
+
+std::vector<int> order_of_placing(const Placing& p) {
+    std::vector<std::tuple<bool, int, double>> key; // fixed ones first, then layer by layer
+    for (const Piece& piece : p.pieces)
+        key.emplace_back(!fixed(p, piece), p.garment.panel_layers[piece.panels[0]], distance_from_body(p, piece));
+    std::vector<int> order(p.pieces.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key[a] < key[b]; });
+    return order;
+}
+
+/// The smallest push that clears the panel; false when there is none.
+bool find_push(const Placing& p, Piece& piece, const Vec3& axis) {
+    Vec3 outward = piece.middle - axis;
+    outward.y() = 0;
+    std::vector<Vec3> ways{piece.normal, -piece.normal};
+    if (piece.normal.dot(outward) < 0) std::swap(ways[0], ways[1]);
+    if (outward.norm() > no_length) ways.push_back(outward.normalized());
+    for (int k = 1; k * p.options.step <= p.options.farthest; ++k)
+        for (const Vec3& way : ways)
+            if (clear(p, piece, k * p.options.step * way)) {
+                piece.push = k * p.options.step * way;
+                return true;
+            }
+    return false;
+}
+
+} // namespace
+
+PlacedClear place_clear(const Garment& garment, const Points& x, const TriMesh& body, const PlaceOptions& options) {
+    Placing p{.garment = garment, .x = x, .body = body, .options = options};
+    p.body_tree = Bvh(triangle_boxes(body.points, body.triangles, 0));
+    const Vec3 axis = body.points.empty() ? Vec3(Vec3::Zero()) : Vec3(p.body_tree.bounds().center());
+    find_groups(p);
+    find_reach(p);
+    collect_pieces(p);
+    PlacedClear result;
+    for (int i : order_of_placing(p)) {
+        Piece& piece = p.pieces[i];
+        if (!fixed(p, piece) && !clear(p, piece, Vec3::Zero())) {
+            const bool from_body = near_body(p, piece, Vec3::Zero()), found = find_push(p, piece, axis);
+            for (int panel : piece.panels) {
+                if (found)
+                    result.pushed.push_back({panel, piece.push, from_body});
+                else
+                    result.left.push_back(panel);
+            }
+        }
+        piece.placed = true;
+    }
+    result.x = x;
+    for (const Piece& piece : p.pieces)
+        for (int i : piece.nodes) result.x[i] += piece.push;
+    return result;
+}
+
+} // namespace toile

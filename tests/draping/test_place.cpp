@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/place.h"
+
+#include "geometry/distance.h"
+#include "geometry/intersections.h"
+#include "tests/support/shapes.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <limits>
+
+using namespace toile;
+using namespace toile::test;
+
+namespace {
+
+struct Cloth {
+    Garment garment;
+    Points x;
+};
+
+/// Adds a square panel of 20 cm in 10 x 10 cells about `middle`, spanned by u and v; its front looks along u x v.
+void add_panel(Cloth& c, const Vec3& middle, const Vec3& u, const Vec3& v, int layer = 0) {
+    constexpr int n = 10;
+    Garment& g = c.garment;
+    const int panel = int(g.panel_names.size()), first = g.node_count;
+    g.panel_names.push_back("panel " + std::to_string(panel));
+    g.panel_layers.push_back(layer);
+    for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) {
+            const Vec2 at(0.02 * i - 0.1, 0.02 * j - 0.1);
+            g.uv.push_back(at);
+            g.panel_of_vertex.push_back(panel);
+            g.node_of_vertex.push_back(g.node_count++);
+            c.x.push_back(middle + at.x() * u + at.y() * v);
+        }
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            const int a = first + j * (n + 1) + i, b = a + n + 1;
+            g.triangles.insert(g.triangles.end(), {{a, a + 1, b + 1}, {a, b + 1, b}});
+            g.panel_of_triangle.insert(g.panel_of_triangle.end(), 2, panel);
+        }
+    g.edges = make_edges(node_triangles(g), g.node_count);
+}
+
+void add_front(Cloth& c, const Vec3& middle, int layer = 0) {
+    add_panel(c, middle, Vec3::UnitX(), Vec3::UnitY(), layer);
+}
+
+TriMesh panel_mesh(const Cloth& c, const Points& x, int panel) {
+    TriMesh m{x, {}};
+    for (int t = 0; t < int(c.garment.triangles.size()); ++t)
+        if (c.garment.panel_of_triangle[t] == panel) m.triangles.push_back(c.garment.nodes(t));
+    return m;
+}
+
+/// Every triangle against every other, without a tree; 0 where they cross.
+double distance_between(const TriMesh& a, const TriMesh& b) {
+    if (!intersecting_pairs(a, b).empty()) return 0;
+    double least = std::numeric_limits<double>::infinity();
+    const auto corner = [](const TriMesh& m, const Triangle& t, int k) { return m.points[t[k % 3]]; };
+    for (const Triangle& s : a.triangles)
+        for (const Triangle& t : b.triangles)
+            for (int i = 0; i < 3; ++i) {
+                least = std::min(least, nearest_point_triangle(corner(a, s, i), corner(b, t, 0), corner(b, t, 1),
+                                                               corner(b, t, 2)).squared);
+                least = std::min(least, nearest_point_triangle(corner(b, t, i), corner(a, s, 0), corner(a, s, 1),
+                                                               corner(a, s, 2)).squared);
+                for (int j = 0; j < 3; ++j)
+                    least = std::min(least, nearest_edge_edge(corner(a, s, i), corner(a, s, i + 1), corner(b, t, j),
+                                                              corner(b, t, j + 1)).squared);
+            }
+    return std::sqrt(least);
+}
+
+Vec3 push_of(const PlacedClear& placed, int panel) {
+    for (const PanelPush& p : placed.pushed)
+        if (p.panel == panel) return p.push;
+    return Vec3::Zero();
+}
+
+} // namespace
+
+TEST_CASE("panels that are clear stay where they are") {
+    Cloth c;
+    add_front(c, {0, 0, 0.106});
+    add_front(c, {0, 0, 0.109});
+    const PlacedClear placed = place_clear(c.garment, c.x, sphere(0.1, 4));
+    CHECK(placed.pushed.empty());
+    CHECK(placed.left.empty());
+    CHECK(placed.x == c.x);
+}
+
+TEST_CASE("a panel through a body is pushed out of it by no more than it takes") {
+    const TriMesh body = sphere(0.1, 4);
+    for (const double depth : {-0.003, 0.004, 0.05}) {
+        Cloth c;
+        add_front(c, {0, 0, 0.1 - depth});
+        const PlacedClear placed = place_clear(c.garment, c.x, body);
+        REQUIRE(placed.pushed.size() == 1);
+        CHECK(placed.pushed[0].from_body);
+        const Vec3 push = placed.pushed[0].push;
+        CHECK(push.head<2>().norm() < 1e-12);
+        CHECK(push.z() > depth + 0.005 - 1e-3); // a sphere of flat triangles is a little smaller
+        CHECK(push.z() < depth + 0.005 + 2e-3);
+        CHECK(distance_between(panel_mesh(c, placed.x, 0), body) >= 0.005);
+    }
+}
+
+TEST_CASE("a panel that lies inside a body without crossing it is pushed out") {
+    Cloth c;
+    add_front(c, {0, 0, 0.3});
+    const TriMesh body = box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
+    const PlacedClear placed = place_clear(c.garment, c.x, body);
+    CHECK(push_of(placed, 0).z() > 0.205 - 1e-9);
+    CHECK(push_of(placed, 0).z() < 0.207 + 1e-9);
+}
+
+TEST_CASE("two panels in one place are separated") {
+    Cloth c;
+    add_front(c, {0, 0, 0.2});
+    add_front(c, {0.013, 0.007, 0.2});
+    const PlacedClear placed = place_clear(c.garment, c.x, sphere(0.1, 3));
+    REQUIRE(placed.pushed.size() == 1);
+    CHECK_FALSE(placed.pushed[0].from_body);
+    CHECK(placed.pushed[0].push.z() == Approx(0.002));
+    CHECK(distance_between(panel_mesh(c, placed.x, 0), panel_mesh(c, placed.x, 1)) >= 0.002 - 1e-12);
+}
+
+TEST_CASE("crossing panels are separated, from the body too") {
+    Cloth c;
+    add_front(c, {0, 0, 0.09});
+    add_panel(c, {0, 0, 0.1}, Vec3::UnitX(), Vec3(0, 0.8, 0.6)); // cuts the first and the body
+    const TriMesh body = sphere(0.1, 4);
+    const PlacedClear placed = place_clear(c.garment, c.x, body);
+    CHECK(placed.left.empty());
+    CHECK(distance_between(panel_mesh(c, placed.x, 0), panel_mesh(c, placed.x, 1)) >= 0.002 - 1e-12);
+    for (int panel : {0, 1}) CHECK(distance_between(panel_mesh(c, placed.x, panel), body) >= 0.005 - 1e-12);
+}
+
+TEST_CASE("panels that a seam joins at no distance may touch there") {
+    Cloth c;
+    add_front(c, {-0.1, 0, 0.2});
+    add_front(c, {0.1, 0, 0.2});
+    const auto touching = [&] { return place_clear(c.garment, c.x, sphere(0.1, 3)); };
+    CHECK(touching().pushed.size() == 1);
+    for (int j = 0; j <= 10; ++j) {
+        const int a = 11 * j + 10, b = 121 + 11 * j;
+        c.garment.stitches.push_back({a, {b, b}, 0, 0, 0.02});
+    }
+    CHECK(touching().pushed.empty());
+    c.garment.stitches.erase(c.garment.stitches.begin() + 4, c.garment.stitches.begin() + 7);
+    CHECK(touching().pushed.size() == 1); // where no stitch is they may not
+}
+
+TEST_CASE("the lower layer is placed first and the upper one keeps off it") {
+    Cloth c;
+    add_front(c, {0, 0, 0.104}, 1);
+    add_front(c, {0, 0, 0.094}, 0);
+    const PlacedClear placed = place_clear(c.garment, c.x, sphere(0.1, 4));
+    const double lower = placed.x[121].z(), upper = placed.x[0].z();
+    CHECK(lower < 0.108);
+    CHECK(upper >= lower + 0.002 - 1e-12);
+}
+
+TEST_CASE("fixed panels stay, others keep off them; a panel that no push clears stays too and is named") {
+    Cloth c;
+    add_front(c, {0, 0, 0.2});
+    add_front(c, {0, 0, 0.2});
+    PlaceOptions o;
+    o.fixed = {false, true};
+    const PlacedClear placed = place_clear(c.garment, c.x, sphere(0.1, 3), o);
+    CHECK(push_of(placed, 0).norm() > 0);
+    CHECK(push_of(placed, 1).norm() == 0);
+    o.farthest = 0.001;
+    const PlacedClear left = place_clear(c.garment, c.x, sphere(0.1, 3), o);
+    CHECK(left.left == std::vector<int>{0});
+    CHECK(left.x == c.x);
+}
+
+TEST_CASE("panels that share nodes are pushed as one") {
+    Cloth c;
+    add_front(c, {-0.1, 0, 0.09});
+    add_front(c, {0.1, 0, 0.09});
+    for (int j = 0; j <= 10; ++j) c.garment.node_of_vertex[121 + 11 * j] = 11 * j + 10;
+    c.garment.edges = make_edges(node_triangles(c.garment), c.garment.node_count);
+    const PlacedClear placed = place_clear(c.garment, c.x, sphere(0.1, 4));
+    REQUIRE(placed.pushed.size() == 2);
+    CHECK(push_of(placed, 0) == push_of(placed, 1));
+}

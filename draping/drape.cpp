@@ -30,6 +30,7 @@ constexpr double barrier_stiffness = 1e7; // Pa/m for a cloth of 0.15 kg/m2 at a
 constexpr double sewing_softness = 0.1;   // of the barrier while seams are pulled shut, which takes little force
 constexpr double floor_share = 0.1;      // of the contact distance that is never entered
 constexpr double grow_distance = 2e-3;   // m, contact distance while the body grows back
+constexpr double grow_share = 0.5;       // of the way to the cloth that the body takes at once, lest it get stuck there
 constexpr double soft_limit = 0.7;    // turn of the strain limits' barrier that cloth can meet from beyond them
 constexpr double hard_limit = 0.9;    // and the one to end with, hardened further where the cloth needs it
 constexpr double slid = 0.10;            // m below its place at which a held edge counts as slid off
@@ -319,9 +320,9 @@ PlaceOptions place_options(const Run& run) {
 void note_pushes(Run& run, const PlacedClear& placed) {
     const std::vector<std::string>& names = run.staging.levels[0].garment.panel_names;
     for (const PanelPush& p : placed.pushed)
-        run.result.decisions.push_back(text("panel \"%s\" was moved %.0f mm out of %s before sewing",
+        run.result.decisions.push_back(text("panel \"%s\" was moved %.0f mm %s before sewing",
                                             names[p.panel].c_str(), 1e3 * p.push.norm(),
-                                            p.from_body ? "the body" : "another panel"));
+                                            p.from_body ? "out of the body" : "clear of another panel"));
 }
 
 /// Places and sews the coarsest level. The cloth may pass through itself on the way when it cannot close
@@ -433,7 +434,8 @@ void clear_of_body(Run& run, ClothProblem& problem, Cholesky& factor) {
         Points motion(drawn.points.size());
         for (std::size_t v = 0; v < motion.size(); ++v) motion[v] = run.body.points[v] - problem.contact().body()[v];
         problem.contact().prepare(run.x, still, &motion);
-        const double t = problem.contact().feasible_step(run.x, still, &motion);
+        double t = problem.contact().feasible_step(run.x, still, &motion);
+        if (t < 1) t *= grow_share;
         Points next = problem.contact().body();
         for (std::size_t v = 0; v < motion.size(); ++v) next[v] = t == 1 ? run.body.points[v] : Vec3(next[v] + t * motion[v]);
         problem.contact().set_body(next);

@@ -600,6 +600,14 @@ void prove(Run& run) {
     if (!own.empty()) run.result.where += ", the first on " + place_of_triangle(run.garment, run.x, own[0].triangle);
 }
 
+void note_landmarks(Run& run) {
+    const std::vector<std::string> labels = labels_of(run.garment);
+    const StagedLevel& staged = run.staging.levels[run.level];
+    const std::map<std::string, double> placed = label_heights(staged.garment, staged.placed, labels);
+    for (const auto& [label, height] : label_heights(run.garment, run.x, labels))
+        run.result.landmarks.push_back({label, placed.at(label), height});
+}
+
 /// The report's sentences on what was modelled.
 void decide(Run& run) {
     for (const std::string& label : run.held) run.facts.hooks.push_back({label, true, run.carried_at[label], 0, 0});
@@ -672,6 +680,7 @@ DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabri
         run.result.where = run.stopped_by +
                            text(", level %d of %d, at a residual of %.3g", run.level + 1, run.levels(), run.result.residual);
     }
+    note_landmarks(run);
     if (!run.open) {
         prove(run);
         decide(run);

@@ -48,6 +48,13 @@ struct StageSeconds {
     double seconds = 0;
 };
 
+/// Where the edges of one label came to lie.
+struct Landmark {
+    std::string label;
+    double placed = 0;  ///< m, mean height where the pattern's file puts them
+    double settled = 0; ///< m, at the end
+};
+
 struct BarrierReport {
     double distance = 0;  ///< m, below which contact acts
     double stiffness = 0; ///< Pa/m: pressure per depth below `distance` near it
@@ -67,6 +74,7 @@ struct DrapeResult {
     BarrierReport barrier;
     std::vector<LevelReport> levels;
     std::vector<StageSeconds> seconds;
+    std::vector<Landmark> landmarks; ///< of every labelled edge, by label
     std::vector<std::string> decisions; ///< what was modelled or left out, with the measure that justified it
     std::vector<std::string> warnings;
 };

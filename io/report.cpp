@@ -64,6 +64,13 @@ Json levels(const DrapeResult& r) {
     return out;
 }
 
+Json landmarks(const DrapeResult& r) {
+    Json out = Json::array();
+    for (const Landmark& l : r.landmarks)
+        out.push_back({{"label", l.label}, {"placed", l.placed}, {"settled", l.settled}});
+    return out;
+}
+
 Json seconds(const DrapeResult& r, const ReportContext& context) {
     Json out{{"total", context.total_seconds}};
     for (const auto* list : {&context.seconds, &r.seconds})
@@ -117,6 +124,7 @@ nlohmann::ordered_json make_report(const DrapeResult& r, const TriMesh& body, co
         {"developability",
          {{"angle_defect_mean", bent.angle_defect_mean}, {"angle_defect_max", bent.angle_defect_max}}},
         {"ease", ease(r, body, context.body_measures)},
+        {"landmarks", landmarks(r)},
         {"vertices", r.garment.uv.size()},
         {"nodes", r.garment.node_count},
         {"triangles", r.garment.triangles.size()},

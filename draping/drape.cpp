@@ -220,9 +220,12 @@ void note_release(Run& run) {
         run.facts.hooks.push_back({label, false, run.carried_at[label], now.at(label), 0});
 }
 
-bool touches_body(const ClothProblem& problem, const Points& x, const Triangle& nodes) {
+/// Whether cloth at this height, or nearer to it than `reach`, touches the body.
+bool touches_body(const ClothProblem& problem, const Points& x, double height, double reach) {
     const Points force = problem.contact().body_forces(problem.contact().active(x));
-    return std::any_of(nodes.begin(), nodes.end(), [&](int i) { return force[i].squaredNorm() > 0; });
+    for (std::size_t i = 0; i < x.size(); ++i)
+        if (force[i].squaredNorm() > 0 && std::abs(x[i].y() - height) < reach) return true;
+    return false;
 }
 
 /// The pairs that touch at x.
@@ -301,8 +304,7 @@ double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Po
 void note_open_seam(Run& run, const Garment& open, const ClothProblem& problem, const Points& x) {
     const double missing = missing_at_open_seam(open, x, run.fabrics);
     const int s = widest_stitch(open, x);
-    const Triangle ends{open.stitches[s].a, open.stitches[s].b[0], open.stitches[s].b[1]};
-    const bool small = missing > tight && touches_body(problem, x, ends);
+    const bool small = missing > tight && touches_body(problem, x, x[open.stitches[s].a].y(), run.edge_length());
     run.result.status = small ? DrapeStatus::too_small : DrapeStatus::stalled;
     run.result.where = open_seam(open, x, run.staging.seam_names, run.body, touching_pairs(problem, x));
     if (small)
@@ -474,7 +476,7 @@ void note_where(Run& run, const ClothProblem& problem, const SettleResult& r) {
              t.warp ? "warp" : "weft", 100 * t.limit) +
         run.fabrics[run.garment.panel_of_triangle[t.triangle]].name + " allows";
     if (t.missing > tight && run.result.status == DrapeStatus::stalled &&
-        touches_body(problem, run.x, run.garment.nodes(t.triangle)))
+        touches_body(problem, run.x, run.x[run.garment.nodes(t.triangle)[0]].y(), run.edge_length()))
         run.result.status = DrapeStatus::too_small;
     where = stretched + (t.missing > tight ? text("; %.1f cm are missing round the garment there", 100 * t.missing)
                                            : "; " + where);
@@ -595,7 +597,7 @@ void prove(Run& run) {
     run.result.where = text("%d triangle pairs of cloth and body and %d of cloth and cloth cross", n.cloth_avatar,
                             n.cloth_cloth);
     const ContactCloth cloth = contact_cloth(run.garment);
-    const std::vector<Crossing> own =
+    const std::vector<ClothCrossing> own =
         find_crossings({cloth.triangles, run.garment.edges, run.edge_length(), cloth.sewn_to_edge}, run.x);
     if (!own.empty()) run.result.where += ", the first on " + place_of_triangle(run.garment, run.x, own[0].triangle);
 }

@@ -33,7 +33,7 @@ bool crosses(const Points& x, const std::array<int, 2>& e, const Triangle& t, do
 }
 
 /// Sum over the triangles at the edge of the unit directions in which the crossing goes on from the edge into each.
-Vec3 contour_direction(const TangledCloth& cloth, const Points& x, const Crossing& c, const Vec3& normal) {
+Vec3 contour_direction(const TangledCloth& cloth, const Points& x, const ClothCrossing& c, const Vec3& normal) {
     const auto& ends = cloth.edges.ends[c.edge];
     const Vec3 edge = (x[ends[1]] - x[ends[0]]).normalized();
     Vec3 sum = Vec3::Zero();
@@ -62,7 +62,7 @@ Points averaged(const TangledCloth& cloth, const Points& v) {
 
 } // namespace
 
-std::vector<Crossing> find_crossings(const TangledCloth& cloth, const Points& x) {
+std::vector<ClothCrossing> find_crossings(const TangledCloth& cloth, const Points& x) {
     const Bvh tree(triangle_boxes(x, cloth.triangles, 0));
     std::set<std::array<int, 2>> sewn;
     for (const auto& [node, end0, end1] : cloth.sewn_to_edge)
@@ -71,7 +71,7 @@ std::vector<Crossing> find_crossings(const TangledCloth& cloth, const Points& x)
         return a == b || (!sewn.empty() && sewn.count({std::min(a, b), std::max(a, b)}) > 0);
     };
     const int edges = cloth.edges.size(), chunk = 128;
-    std::vector<std::vector<Crossing>> found(chunk_count(edges, chunk));
+    std::vector<std::vector<ClothCrossing>> found(chunk_count(edges, chunk));
     parallel_for(edges, chunk, [&](int begin, int end) {
         for (int e = begin; e < end; ++e) {
             const auto& ends = cloth.edges.ends[e];
@@ -81,14 +81,14 @@ std::vector<Crossing> find_crossings(const TangledCloth& cloth, const Points& x)
             tree.overlapping(box, [&](int t) {
                 const Triangle& k = cloth.triangles[t];
                 if (std::any_of(k.begin(), k.end(), [&](int i) { return joined(i, ends[0]) || joined(i, ends[1]); })) return;
-                Crossing c{e, t, 0, Vec3::Zero()};
+                ClothCrossing c{e, t, 0, Vec3::Zero()};
                 if (crosses(x, ends, k, c.along, c.corner)) found[begin / chunk].push_back(c);
             });
             std::sort(found[begin / chunk].begin() + first, found[begin / chunk].end(),
-                      [](const Crossing& a, const Crossing& b) { return a.triangle < b.triangle; });
+                      [](const ClothCrossing& a, const ClothCrossing& b) { return a.triangle < b.triangle; });
         }
     });
-    std::vector<Crossing> all;
+    std::vector<ClothCrossing> all;
     for (const auto& f : found) all.insert(all.end(), f.begin(), f.end());
     return all;
 }
@@ -96,13 +96,13 @@ std::vector<Crossing> find_crossings(const TangledCloth& cloth, const Points& x)
 Untangled untangle(const TangledCloth& cloth, Points& x, int max_rounds) {
     Untangled result;
     for (;; ++result.rounds) {
-        const std::vector<Crossing> crossings = find_crossings(cloth, x);
+        const std::vector<ClothCrossing> crossings = find_crossings(cloth, x);
         result.after = int(crossings.size());
         if (result.rounds == 0) result.before = result.after;
         if (crossings.empty() || result.rounds == max_rounds) return result;
         Points step(x.size(), Vec3::Zero());
         std::vector<double> weight(x.size(), 0.0);
-        for (const Crossing& c : crossings) {
+        for (const ClothCrossing& c : crossings) {
             const auto& ends = cloth.edges.ends[c.edge];
             const Triangle& t = cloth.triangles[c.triangle];
             const Vec3 normal = normal_of(x, t).normalized(), edge = (x[ends[1]] - x[ends[0]]).normalized();

@@ -19,14 +19,14 @@ struct TangledCloth {
 };
 
 /// An edge that passes through a triangle with which it shares no node.
-struct Crossing {
+struct ClothCrossing {
     int edge = 0, triangle = 0;
     double along = 0;  ///< of the edge, [0, 1]
     Vec3 corner;       ///< barycentric coordinates in the triangle
 };
 
 /// Sorted by edge and triangle. In plain floating point: a look by exact predicates has the last word.
-std::vector<Crossing> find_crossings(const TangledCloth& cloth, const Points& x);
+std::vector<ClothCrossing> find_crossings(const TangledCloth& cloth, const Points& x);
 
 struct Untangled {
     int before = 0, after = 0; ///< crossings of edges and triangles

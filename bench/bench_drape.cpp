@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Real garments from file to files, as a table: bench_drape 20mm [name ...]. Patterns, bodies and fabrics are those
 // of garmentcode/MANIFEST.tsv in the folder that TOILE_TEST_DATA names; without names, all that are to be draped.
-#include "src/length.h"
+#include "src/quantity.h"
 #include "src/pipeline.h"
 #include "tests/support/temp_folder.h"
 

@@ -31,15 +31,6 @@ Json limited(const Spread& s, double limit) {
     return out;
 }
 
-Json strain(const StrainMeasure& m) {
-    return {{"warp", limited(m.warp, m.limit_warp)},
-            {"weft", limited(m.weft, m.limit_weft)},
-            {"principal", spread(m.principal)},
-            {"shear", limited(m.shear, m.limit_shear)},
-            {"compressed_area", m.compressed_area},
-            {"narrowed_area", m.narrowed_area}};
-}
-
 Json ease_at(const DrapeResult& r, const TriMesh& body, double height) {
     const EaseMeasure e = measure_ease(r.garment, r.state.positions, body, height);
     if (!e.found) return nullptr;
@@ -106,6 +97,15 @@ Contact worst_contact(const DrapeResult& r, const TriMesh& body, bool written_as
 
 } // namespace
 
+nlohmann::ordered_json strain_json(const StrainMeasure& m) {
+    return {{"warp", limited(m.warp, m.limit_warp)},
+            {"weft", limited(m.weft, m.limit_weft)},
+            {"principal", spread(m.principal)},
+            {"shear", limited(m.shear, m.limit_shear)},
+            {"compressed_area", m.compressed_area},
+            {"narrowed_area", m.narrowed_area}};
+}
+
 nlohmann::ordered_json make_report(const DrapeResult& r, const TriMesh& body, const PanelFabrics& fabrics,
                                    const ReportContext& context) {
     const Points& x = r.state.positions;
@@ -116,7 +116,7 @@ nlohmann::ordered_json make_report(const DrapeResult& r, const TriMesh& body, co
         {"where", r.where},
         {"residual", number(r.residual)},
         {"tolerance", r.tolerance},
-        {"strain", strain(measure_strain(r.garment, x, fabrics))},
+        {"strain", strain_json(measure_strain(r.garment, x, fabrics))},
         {"seam_gap_max", seam_gap_max(r.garment, x)},
         {"intersections",
          {{"cloth_avatar", contact.count.cloth_avatar}, {"cloth_cloth", contact.count.cloth_cloth}}},

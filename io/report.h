@@ -25,6 +25,9 @@ struct ReportContext {
     bool written_as_float = false;
 };
 
+/// The strains of a garment as reports and inspections give them.
+nlohmann::ordered_json strain_json(const StrainMeasure& strain);
+
 /// The report, valid by docs/report.schema.json and described in docs/report.md. It measures the garment as
 /// it lies; what cannot be measured (the clearance of nothing) is null.
 nlohmann::ordered_json make_report(const DrapeResult& result, const TriMesh& body,

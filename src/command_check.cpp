@@ -4,7 +4,7 @@
 #include "io/read_pattern.h"
 #include "patterns/check.h"
 #include "src/drape_input.h"
-#include "src/length.h"
+#include "src/quantity.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>

@@ -2,8 +2,7 @@
 #include "src/command_line.h"
 
 #include "geometry/parallel.h"
-#include "src/duration.h"
-#include "src/length.h"
+#include "src/quantity.h"
 #include "src/options.h"
 #include "src/pipeline.h"
 #include "src/progress.h"

@@ -2,7 +2,7 @@
 #include "src/command_line.h"
 
 #include "sewing/avatar.h"
-#include "src/length.h"
+#include "src/quantity.h"
 #include "src/options.h"
 #include "src/pipeline.h"
 

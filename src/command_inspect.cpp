@@ -3,7 +3,8 @@
 
 #include "draping/inspect.h"
 #include "io/read_garment.h"
-#include "src/length.h"
+#include "io/report.h"
+#include "src/quantity.h"
 #include "src/options.h"
 #include "src/pipeline.h"
 
@@ -23,10 +24,6 @@ struct InspectArguments {
     std::string garment, avatar, fabric;
     bool repair_avatar = false, json = false;
 };
-
-Json spread(const Spread& s, double limit) {
-    return {{"min", s.min}, {"max", s.max}, {"p99", s.p99}, {"mean", s.mean}, {"limit", limit}};
-}
 
 Json to_json(const Inspection& i) {
     Json json{
@@ -48,14 +45,7 @@ Json to_json(const Inspection& i) {
          {{"cloth_avatar", i.intersections.cloth_avatar}, {"cloth_cloth", i.intersections.cloth_cloth}}}};
     if (i.has_body) json["clearance_min"] = i.clearance;
     if (!i.has_pattern) return json;
-    const StrainMeasure& s = i.strain;
-    json["strain"] = {{"warp", spread(s.warp, s.limit_warp)},
-                      {"weft", spread(s.weft, s.limit_weft)},
-                      {"principal", spread(s.principal, 0)},
-                      {"shear", spread(s.shear, s.limit_shear)},
-                      {"compressed_area", s.compressed_area},
-                      {"narrowed_area", s.narrowed_area}};
-    json["strain"]["principal"].erase("limit");
+    json["strain"] = strain_json(i.strain);
     json["developability"] = {{"angle_defect_mean", i.developability.angle_defect_mean},
                               {"angle_defect_max", i.developability.angle_defect_max}};
     return json;

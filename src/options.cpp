@@ -2,7 +2,7 @@
 #include "src/options.h"
 
 #include "draping/fabric/fabric.h"
-#include "src/length.h"
+#include "src/quantity.h"
 
 #include <CLI/CLI.hpp>
 

@@ -1,34 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/contact/contact.h"
 #include "draping/contact/friction.h"
+#include "tests/support/small_contact.h"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
 
 using namespace toile;
+using test::tetrahedron;
+using test::two_sheets;
 
 namespace {
-
-// Two triangles of cloth close over a third and over a tetrahedral body's upper face.
-ContactCloth two_sheets() {
-    ContactCloth c;
-    c.triangles = {{0, 1, 2}, {3, 4, 5}};
-    c.edges = {{0, 1}, {0, 2}, {1, 2}, {3, 4}, {3, 5}, {4, 5}};
-    c.node_area.assign(6, 1e-4);
-    c.edge_length.assign(6, 0.02);
-    c.edge_area.assign(6, 1e-4);
-    c.node_reach.assign(6, 0.01);
-    c.group = {0, 1, 2, 3, 4, 5};
-    return c;
-}
-
-TriMesh tetrahedron() {
-    TriMesh m;
-    m.points = {{-0.05, 0, -0.05}, {0.06, 0, -0.04}, {0.0, 0, 0.07}, {0, -0.1, 0}};
-    m.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-    return m;
-}
 
 Points near_contact() {
     return {{0.001, 0.0008, 0.002}, {0.021, 0.0011, 0.001}, {0.008, 0.0009, 0.019},

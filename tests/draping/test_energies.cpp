@@ -9,12 +9,15 @@
 
 #include "tests/support/energy_checks.h"
 #include "tests/support/shapes.h"
+#include "tests/support/small_contact.h"
 
 #include <catch2/catch.hpp>
 
 #include <memory>
 
 using namespace toile;
+using test::tetrahedron;
+using test::two_sheets;
 using namespace toile::test;
 using Eigen::VectorXd;
 
@@ -67,26 +70,6 @@ void add_sheet(std::vector<EnergyCase>& cases) {
 // ---- contact
 
 constexpr Barrier barrier{2e-3, 1e-4, 1e5};
-
-// Two triangles of cloth.
-ContactCloth two_sheets() {
-    ContactCloth c;
-    c.triangles = {{0, 1, 2}, {3, 4, 5}};
-    c.edges = {{0, 1}, {0, 2}, {1, 2}, {3, 4}, {3, 5}, {4, 5}};
-    c.node_area.assign(6, 1e-4);
-    c.edge_length.assign(6, 0.02);
-    c.edge_area.assign(6, 1e-4);
-    c.node_reach.assign(6, 0.01);
-    c.group = {0, 1, 2, 3, 4, 5};
-    return c;
-}
-
-TriMesh tetrahedron() {
-    TriMesh m;
-    m.points = {{-0.05, 0, -0.05}, {0.06, 0, -0.04}, {0.0, 0, 0.07}, {0, -0.1, 0}};
-    m.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-    return m;
-}
 
 enum class Pairs { node_triangle, edge_edge, any };
 

@@ -4,6 +4,7 @@
 #include "io/read_pattern.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_data.h"
+#include "tests/support/polygon.h"
 
 #include <catch2/catch.hpp>
 
@@ -15,16 +16,10 @@
 #include <sstream>
 
 using namespace toile;
+using test::polygon;
 using Catch::Matchers::Contains;
 
 namespace {
-
-Loop polygon(const std::vector<Vec2>& p) {
-    Loop loop;
-    for (std::size_t i = 0; i < p.size(); ++i)
-        loop.push_back({p[i], p[(i + 1) % p.size()], Straight{}, {}});
-    return loop;
-}
 
 Panel box(const std::string& name, double width, double height) {
     Panel panel;

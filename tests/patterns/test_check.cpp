@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "patterns/check.h"
 #include "patterns/curve.h"
+#include "tests/support/polygon.h"
 
 #include <catch2/catch.hpp>
 
@@ -10,15 +11,9 @@
 #include <limits>
 
 using namespace toile;
+using test::polygon;
 
 namespace {
-
-Loop polygon(const std::vector<Vec2>& p) {
-    Loop loop;
-    for (std::size_t i = 0; i < p.size(); ++i)
-        loop.push_back({p[i], p[(i + 1) % p.size()], Straight{}, {}});
-    return loop;
-}
 
 Panel square(const std::string& name, double size = 0.5) {
     Panel panel;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "patterns/crossing.h"
+#include "tests/support/polygon.h"
 
 #include <catch2/catch.hpp>
 
@@ -7,15 +8,9 @@
 #include <set>
 
 using namespace toile;
+using test::polygon;
 
 namespace {
-
-Loop polygon(const std::vector<Vec2>& p) {
-    Loop loop;
-    for (std::size_t i = 0; i < p.size(); ++i)
-        loop.push_back({p[i], p[(i + 1) % p.size()], Straight{}, {}});
-    return loop;
-}
 
 bool left_of(const Vec2& a, const Vec2& b, const Vec2& c) {
     return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x()) > 0;

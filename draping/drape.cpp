@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <limits>
 #include <map>
+#include <tuple>
 
 namespace toile {
 
@@ -264,9 +265,39 @@ void close_what_is_closed(Run& run, const Garment& open, const Points& x) {
     run.x = merge(run.garment, map, x);
 }
 
+/// Lets the body grow on straight lines from where it is to its full size, pushing the cloth ahead of it. Returns
+/// whether it got there.
+bool grow(Run& run, ClothProblem& problem, Points& x, Cholesky& factor) {
+    Contact& contact = problem.contact();
+    SettleOptions o;
+    o.tolerance = 1;
+    o.max_iterations = 3;
+    o.exact_below = 0;
+    const Eigen::VectorXd still = Eigen::VectorXd::Zero(3 * problem.points());
+    bool grown = false;
+    for (int k = 0; k < 200 && !run.stopped && !grown; ++k) {
+        Points motion(run.body.points.size());
+        double longest = 0;
+        for (std::size_t v = 0; v < motion.size(); ++v) {
+            motion[v] = run.body.points[v] - contact.body()[v];
+            longest = std::max(longest, motion[v].norm());
+        }
+        const double part = std::min(1.0, 2 * contact.options().body.distance / longest);
+        for (Vec3& m : motion) m *= part;
+        contact.prepare(x, still, &motion);
+        double t = contact.feasible_step(x, still, &motion);
+        if (t < 1) t *= grow_share;
+        grown = part * t == 1;
+        Points next = contact.body();
+        for (std::size_t v = 0; v < motion.size(); ++v) next[v] = grown ? run.body.points[v] : Vec3(next[v] + t * motion[v]);
+        contact.set_body(next);
+        run.settle_some(problem, x, factor, o);
+    }
+    return grown;
+}
+
 /// Pulls the seams of the coarsest level shut around the body; returns the widest gap left, m.
-double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Points& x) {
-    Cholesky factor;
+double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Points& x, Cholesky& factor) {
     SettleOptions o;
     o.tolerance = 1e-2;
     o.max_iterations = 6;
@@ -300,16 +331,35 @@ double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Po
     return last;
 }
 
+/// One way to sew the coarsest level.
+struct Sewing {
+    bool self = true;  ///< with contact between panels
+    double lift = 0;   ///< m, by which the garment is moved up as a whole
+};
+
+struct Sewn {
+    PlacedClear placed;
+    Points x;                ///< nodes of the open garment
+    Sewing way;
+    double gap = 0;          ///< m, the widest that is left
+    int crossings = 0;       ///< pairs of triangles of the closed garment
+    bool open = false;       ///< it is too wide to be joined
+    DrapeStatus status = DrapeStatus::stalled; ///< if it is open, and
+    std::string where = {};  ///< what keeps it so
+};
+
 /// A seam stays open because its cloth does not reach round the body, or because something is in the way.
-void note_open_seam(Run& run, const Garment& open, const ClothProblem& problem, const Points& x) {
-    const double missing = missing_at_open_seam(open, x, run.fabrics);
-    const int s = widest_stitch(open, x);
-    const bool small = missing > tight && touches_body(problem, x, x[open.stitches[s].a].y(), run.edge_length());
-    run.result.status = small ? DrapeStatus::too_small : DrapeStatus::stalled;
-    run.result.where = open_seam(open, x, run.staging.seam_names, run.body, touching_pairs(problem, x));
+void note_open_seam(const Run& run, const ClothProblem& problem, Sewn& sewn) {
+    const Garment& open = run.staging.levels[0].garment;
+    const double missing = missing_at_open_seam(open, sewn.x, run.fabrics);
+    const int s = widest_stitch(open, sewn.x);
+    const double height = sewn.x[open.stitches[s].a].y();
+    const bool small = missing > tight && touches_body(problem, sewn.x, height, run.edge_length());
+    sewn.status = small ? DrapeStatus::too_small : DrapeStatus::stalled;
+    sewn.where = open_seam(open, sewn.x, run.staging.seam_names, run.body, touching_pairs(problem, sewn.x));
     if (small)
-        run.result.where += text("; with the fabric stretched to its limit %.1f cm are missing round the garment there",
-                                 100 * missing);
+        sewn.where += text("; with the fabric stretched to its limit %.1f cm are missing round the garment there",
+                           100 * missing);
 }
 
 PlaceOptions place_options(const Run& run) {
@@ -327,58 +377,79 @@ void note_pushes(Run& run, const PlacedClear& placed) {
                                             p.from_body ? "out of the body" : "clear of another panel"));
 }
 
-/// Places and sews the coarsest level. The cloth may pass through itself on the way when it cannot close
-/// otherwise; what counts is that the sewn garment does not cross itself.
+Sewn sew_open(Run& run, const Sewing& way) {
+    const Garment& open = run.staging.levels[0].garment;
+    Points lifted = run.staging.levels[0].placed;
+    for (Vec3& p : lifted) p.y() += way.lift;
+    Sewn sewn{place_clear(open, lifted, run.body, place_options(run)), {}, way};
+    sewn.x = sewn.placed.x;
+    ContactOptions contact = run.contact_options();
+    contact.self = way.self;
+    contact.body.stiffness *= sewing_softness;
+    contact.cloth.stiffness *= sewing_softness;
+    ClothProblem problem(open, run.fabrics, run.body, contact);
+    problem.sheet().softness = 1.0 / 16;
+    for (const Stitch& s : open.stitches)
+        problem.stitches.push_back({s.a, s.b, s.r, seam_stiffness * s.length, seam_pull * s.length});
+    if (way.lift == 0) problem.hooks = hooks_on(run, open, all_hooked(run), problem);
+    for (const auto& [node, place] : pinned_places(run.staging, 0, open)) problem.pin(node);
+    Cholesky factor;
+    sewn.gap = close_open_seams(run, open, problem, sewn.x, factor);
+    sewn.open = sewn.gap >= forced_share * run.edge_length();
+    if (sewn.open) note_open_seam(run, problem, sewn);
+    return sewn;
+}
+
+/// Joins what was sewn. Returns how many pairs of the closed garment's triangles cross.
+int join(Run& run, const Sewn& sewn) {
+    std::vector<int> map;
+    run.garment = close_seams(run.staging.levels[0].garment, &map);
+    run.x = merge(run.garment, map, sewn.x);
+    return count_intersections(node_triangles(run.garment), run.x, run.body, run.garment.stitches).cloth_cloth;
+}
+
+/// Places and sews the coarsest level: where the file puts the garment, else moved up or down as a whole to where
+/// fewer threads pass through the body. The cloth may pass through itself on the way when it cannot close otherwise;
+/// what counts is that the sewn garment does not cross itself.
 void sew_coarsest(Run& run) {
     const auto start = Clock::now();
     const StagedLevel& staged = run.staging.levels[0];
-    const Garment& open = staged.garment;
-    run.result.levels.push_back({staged.edge_length, int(open.uv.size()), 0, 0, 0});
+    run.result.levels.push_back({staged.edge_length, int(staged.garment.uv.size()), 0, 0, 0});
     run.begin("sew", 0.15);
-    const PlacedClear clear = place_clear(open, staged.placed, run.body, place_options(run));
-    note_pushes(run, clear);
-    const Points& placed = clear.x;
-
-    std::vector<int> map;
-    run.garment = close_seams(open, &map);
-    double gap = 0;
-    Points opened;
-    for (const bool self : {true, false}) {
-        ContactOptions contact = run.contact_options();
-        contact.self = self;
-        contact.body.stiffness *= sewing_softness;
-        contact.cloth.stiffness *= sewing_softness;
-        ClothProblem problem(open, run.fabrics, run.body, contact);
-        problem.sheet().softness = 1.0 / 16;
-        for (const Stitch& s : open.stitches)
-            problem.stitches.push_back({s.a, s.b, s.r, seam_stiffness * s.length, seam_pull * s.length});
-        problem.hooks = hooks_on(run, open, all_hooked(run), problem);
-        for (const auto& [node, place] : pinned_places(run.staging, 0, open)) problem.pin(node);
-        Points x = placed;
-        gap = close_open_seams(run, open, problem, x);
-        const Points merged = merge(run.garment, map, x);
-        const int crossings = count_intersections(node_triangles(run.garment), merged, run.body, run.garment.stitches).cloth_cloth;
-        run.x = merged;
-        run.open = gap >= forced_share * staged.edge_length;
-        if (run.open && opened.empty()) {
-            opened = x;
-            note_open_seam(run, open, problem, x);
-        }
-        if (run.stopped || (gap < weld_gap && crossings == 0)) {
-            if (!self && !run.stopped)
-                run.result.decisions.push_back("cloth passed through itself while seams closed: with contact "
-                                               "between panels a seam could not close; the sewn garment does "
-                                               "not cross itself (0 pairs)");
-            break;
-        }
+    const double lift = run.staging.pins.empty() ? free_height(staged.garment, staged.placed, run.body) : 0;
+    std::vector<Sewing> ways{{true, 0}, {false, 0}};
+    if (lift != 0) ways.insert(ways.end(), {{true, lift}, {false, lift}});
+    Sewn sewn;
+    const auto worse = [](const Sewn& a, const Sewn& b) {
+        return std::tie(b.open, b.crossings, b.gap) < std::tie(a.open, a.crossings, a.gap);
+    };
+    for (const Sewing& way : ways) {
+        if (way.self && !sewn.x.empty() && !sewn.open) break;
+        Sewn next = sew_open(run, way);
+        next.crossings = join(run, next);
+        if (sewn.x.empty() || worse(sewn, next)) sewn = std::move(next);
+        if (run.stopped || (sewn.gap < weld_gap && sewn.crossings == 0)) break;
     }
-    if (run.open) { // the best state has open seams: joined by force it would cut itself or the body
-        close_what_is_closed(run, open, opened);
-    } else {
-        run.result.where.clear(); // what kept a seam open with contact between panels is no matter any more
-        if (gap >= weld_gap && !run.stopped)
+    join(run, sewn);
+    if (sewn.way.lift != 0)
+        run.result.decisions.push_back(
+            text("the garment was moved %s by %.0f mm before sewing: where the file puts it threads of seams that "
+                 "could not close pass through the body",
+                 sewn.way.lift > 0 ? "up" : "down", 1e3 * std::abs(sewn.way.lift)));
+    note_pushes(run, sewn.placed);
+    run.open = sewn.open;
+    if (run.open) { // joined by force it would cut itself or the body
+        run.result.status = sewn.status;
+        run.result.where = sewn.where;
+        close_what_is_closed(run, staged.garment, sewn.x);
+    } else if (!run.stopped) {
+        if (!sewn.way.self && sewn.crossings == 0)
+            run.result.decisions.push_back("cloth passed through itself while seams closed: with contact "
+                                           "between panels a seam could not close; the sewn garment does "
+                                           "not cross itself (0 pairs)");
+        if (sewn.gap >= weld_gap)
             run.result.warnings.push_back(
-                text("seams were %.1f mm open when they were joined: something kept them apart", 1e3 * gap));
+                text("seams were %.1f mm open when they were joined: something kept them apart", 1e3 * sewn.gap));
     }
     const double s = std::chrono::duration<double>(Clock::now() - start).count();
     run.result.levels.back().seconds += s;
@@ -427,23 +498,7 @@ void clear_of_body(Run& run, ClothProblem& problem, Cholesky& factor) {
     run.grown = depth == 0;
     run.facts.drawn_in.push_back(depth);
     run.begin("grow", 0);
-    SettleOptions o;
-    o.tolerance = 1;
-    o.max_iterations = 3;
-    o.exact_below = 0;
-    const Eigen::VectorXd still = Eigen::VectorXd::Zero(3 * run.garment.node_count);
-    for (int k = 0; k < 200 && !run.stopped && !run.grown; ++k) {
-        Points motion(drawn.points.size());
-        for (std::size_t v = 0; v < motion.size(); ++v) motion[v] = run.body.points[v] - problem.contact().body()[v];
-        problem.contact().prepare(run.x, still, &motion);
-        double t = problem.contact().feasible_step(run.x, still, &motion);
-        if (t < 1) t *= grow_share;
-        Points next = problem.contact().body();
-        for (std::size_t v = 0; v < motion.size(); ++v) next[v] = t == 1 ? run.body.points[v] : Vec3(next[v] + t * motion[v]);
-        problem.contact().set_body(next);
-        run.grown = t == 1;
-        run.settle_some(problem, run.x, factor, o);
-    }
+    run.grown = run.grown || grow(run, problem, run.x, factor);
     problem.contact().set_options(final);
 }
 

@@ -14,11 +14,16 @@ namespace toile {
 
 namespace {
 
-constexpr double no_length = 1e-6; // m, below which a stitch is closed
+constexpr double height_step = 0.01; // m
+constexpr double highest = 0.2;      // m
+constexpr double height_gain = 2;    // metres of seam that a metre of height must free
+constexpr double no_length = 1e-6;   // m, below which a stitch is closed
 
 using Corners = std::array<Vec3, 3>;
 
-Corners corners_of(const Points& x, const Triangle& t) { return {x[t[0]], x[t[1]], x[t[2]]}; }
+Corners corners_of(const Points& x, const Triangle& t) {
+    return {x[t[0]], x[t[1]], x[t[2]]};
+}
 
 /// Whether the segment from a to b passes through the triangle.
 bool pierces(const Vec3& a, const Vec3& b, const Corners& t) {
@@ -54,7 +59,7 @@ struct Piece {
     std::vector<int> nodes;     ///< ascending
     Vec3 normal = Vec3::Zero(), middle = Vec3::Zero();
     Vec3 push = Vec3::Zero();
-    Bvh tree;                   ///< of its triangles where the file puts them
+    Bvh tree; ///< of its triangles where the file puts them
     bool placed = false;
 };
 
@@ -65,19 +70,21 @@ struct Placing {
     const PlaceOptions& options;
     std::vector<Piece> pieces = {};
     Bvh body_tree = {};
-    std::vector<int> group = {};  ///< of a node: nodes that stitches of no length join
-    std::vector<double> reach = {}; ///< m, of a node: smallest altitude of the triangles round it
+    std::vector<int> group = {};             ///< of a node: nodes that stitches of no length join
+    std::vector<double> reach = {};          ///< m, of a node: smallest altitude of the triangles round it
     std::vector<std::vector<int>> ring = {}; ///< groups next to a group, sorted
 
     Corners corners(int t, const Vec3& push) const {
         Corners c = corners_of(x, garment.nodes(t));
-        for (Vec3& p : c) p += push;
+        for (Vec3& p : c)
+            p += push;
         return c;
     }
 
     Box box(int t, const Vec3& push, double margin) const {
         Box b;
-        for (const Vec3& p : corners(t, push)) b.extend(p);
+        for (const Vec3& p : corners(t, push))
+            b.extend(p);
         b.min().array() -= margin;
         b.max().array() += margin;
         return b;
@@ -89,7 +96,8 @@ void find_groups(Placing& p) {
     p.group.resize(g.node_count);
     std::iota(p.group.begin(), p.group.end(), 0);
     const auto root = [&](int i) {
-        while (p.group[i] != i) i = p.group[i];
+        while (p.group[i] != i)
+            i = p.group[i];
         return i;
     };
     for (const Stitch& s : g.stitches) {
@@ -97,13 +105,15 @@ void find_groups(Placing& p) {
         const int a = root(s.a), b = root(s.b[0]);
         p.group[std::max(a, b)] = std::min(a, b);
     }
-    for (int& i : p.group) i = root(i);
+    for (int& i : p.group)
+        i = root(i);
     p.ring.resize(g.node_count);
     for (const auto& [a, b] : g.edges.ends) {
         p.ring[p.group[a]].push_back(p.group[b]);
         p.ring[p.group[b]].push_back(p.group[a]);
     }
-    for (auto& ring : p.ring) std::sort(ring.begin(), ring.end());
+    for (auto& ring : p.ring)
+        std::sort(ring.begin(), ring.end());
 }
 
 void find_reach(Placing& p) {
@@ -112,12 +122,14 @@ void find_reach(Placing& p) {
         const Corners c = p.corners(t, Vec3::Zero());
         const double doubled = (c[1] - c[0]).cross(c[2] - c[0]).norm();
         const double longest = std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
-        for (int i : p.garment.nodes(t)) p.reach[i] = std::min(p.reach[i], longest > 0 ? doubled / longest : 0);
+        for (int i : p.garment.nodes(t))
+            p.reach[i] = std::min(p.reach[i], longest > 0 ? doubled / longest : 0);
     }
 }
 
-/// What two triangles of different panels must keep between them: less where stitches of no length hold the panels
-/// together and neither has been moved against the other, nothing where the triangles share such a stitch.
+/// What two triangles of different panels must keep between them: less where stitches of no length hold the
+/// panels together and neither has been moved against the other, nothing where the triangles share such a
+/// stitch.
 double wanted_distance(const Placing& p, int s, int t) {
     double wanted = p.options.from_cloth;
     for (int i : p.garment.nodes(s))
@@ -135,7 +147,8 @@ std::vector<int> pieces_of_panels(const Garment& g) {
     std::vector<int> root(g.panel_names.size()), first(g.node_count, -1);
     std::iota(root.begin(), root.end(), 0);
     const auto find = [&](int i) {
-        while (root[i] != i) i = root[i];
+        while (root[i] != i)
+            i = root[i];
         return i;
     };
     for (std::size_t v = 0; v < g.node_of_vertex.size(); ++v) {
@@ -146,7 +159,8 @@ std::vector<int> pieces_of_panels(const Garment& g) {
     }
     std::vector<int> number(root.size());
     int count = 0;
-    for (int i = 0; i < int(root.size()); ++i) number[i] = root[i] == i ? count++ : number[find(i)];
+    for (int i = 0; i < int(root.size()); ++i)
+        number[i] = root[i] == i ? count++ : number[find(i)];
     return number;
 }
 
@@ -157,7 +171,8 @@ void collect_pieces(Placing& p) {
         if (piece_of[i] == int(p.pieces.size())) p.pieces.emplace_back();
         p.pieces[piece_of[i]].panels.push_back(i);
     }
-    for (int t = 0; t < int(g.triangles.size()); ++t) p.pieces[piece_of[g.panel_of_triangle[t]]].triangles.push_back(t);
+    for (int t = 0; t < int(g.triangles.size()); ++t)
+        p.pieces[piece_of[g.panel_of_triangle[t]]].triangles.push_back(t);
     for (Piece& piece : p.pieces) {
         double area = 0;
         std::vector<Box> boxes;
@@ -168,7 +183,8 @@ void collect_pieces(Placing& p) {
             piece.middle += n.norm() * (c[0] + c[1] + c[2]) / 3;
             area += n.norm();
             boxes.push_back(p.box(t, Vec3::Zero(), 0));
-            for (int i : g.nodes(t)) piece.nodes.push_back(i);
+            for (int i : g.nodes(t))
+                piece.nodes.push_back(i);
         }
         if (area > 0) piece.middle /= area;
         if (piece.normal.norm() > 0) piece.normal.normalize();
@@ -200,7 +216,8 @@ bool near_body(const Placing& p, const Piece& piece, const Vec3& push) {
         bool near = false;
         const Corners c = p.corners(t, push);
         p.body_tree.overlapping(p.box(t, push, p.options.from_body), [&](int s) {
-            near = near || nearer_than(c, corners_of(p.body.points, p.body.triangles[s]), p.options.from_body);
+            near =
+                near || nearer_than(c, corners_of(p.body.points, p.body.triangles[s]), p.options.from_body);
         });
         if (near) return true;
     }
@@ -246,14 +263,15 @@ double distance_from_body(const Placing& p, const Piece& piece) {
 }
 
 bool fixed(const Placing& p, const Piece& piece) {
-    return !p.options.fixed.empty() &&
-           std::any_of(piece.panels.begin(), piece.panels.end(), [&](int i) { return bool(p.options.fixed[i]); });
+    return !p.options.fixed.empty() && std::any_of(piece.panels.begin(), piece.panels.end(),
+                                                   [&](int i) { return bool(p.options.fixed[i]); });
 }
 
 std::vector<int> order_of_placing(const Placing& p) {
     std::vector<std::tuple<bool, int, double>> key; // fixed ones first, then layer by layer
     for (const Piece& piece : p.pieces)
-        key.emplace_back(!fixed(p, piece), p.garment.panel_layers[piece.panels[0]], distance_from_body(p, piece));
+        key.emplace_back(!fixed(p, piece), p.garment.panel_layers[piece.panels[0]],
+                         distance_from_body(p, piece));
     std::vector<int> order(p.pieces.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return key[a] < key[b]; });
@@ -276,9 +294,42 @@ bool find_push(const Placing& p, Piece& piece, const Vec3& axis) {
     return false;
 }
 
+/// Metres of open seam whose threads pass through the body once the garment is moved.
+double blocked_seam(const Placing& p, const Vec3& move) {
+    double blocked = 0;
+    for (const Stitch& s : p.garment.stitches) {
+        const Vec3 a = p.x[s.a] + move, b = (1 - s.r) * p.x[s.b[0]] + s.r * p.x[s.b[1]] + move;
+        Box thread;
+        thread.extend(a);
+        thread.extend(b);
+        bool through = false;
+        p.body_tree.overlapping(thread, [&](int t) {
+            through = through || pierces(a, b, corners_of(p.body.points, p.body.triangles[t]));
+        });
+        if (through) blocked += s.length;
+    }
+    return blocked;
+}
+
 } // namespace
 
-PlacedClear place_clear(const Garment& garment, const Points& x, const TriMesh& body, const PlaceOptions& options) {
+double free_height(const Garment& garment, const Points& x, const TriMesh& body) {
+    const PlaceOptions options;
+    Placing p{.garment = garment, .x = x, .body = body, .options = options};
+    p.body_tree = Bvh(triangle_boxes(body.points, body.triangles, 0));
+    double best = 0, least = blocked_seam(p, Vec3::Zero());
+    for (int k = 1; k * height_step <= highest; ++k)
+        for (const double height : {k * height_step, -k * height_step}) {
+            const double blocked = blocked_seam(p, {0, height, 0});
+            if (blocked > least - height_gain * (std::abs(height) - std::abs(best))) continue;
+            least = blocked;
+            best = height;
+        }
+    return best;
+}
+
+PlacedClear place_clear(const Garment& garment, const Points& x, const TriMesh& body,
+                        const PlaceOptions& options) {
     Placing p{.garment = garment, .x = x, .body = body, .options = options};
     p.body_tree = Bvh(triangle_boxes(body.points, body.triangles, 0));
     const Vec3 axis = body.points.empty() ? Vec3(Vec3::Zero()) : Vec3(p.body_tree.bounds().center());
@@ -301,7 +352,8 @@ PlacedClear place_clear(const Garment& garment, const Points& x, const TriMesh& 
     }
     result.x = x;
     for (const Piece& piece : p.pieces)
-        for (int i : piece.nodes) result.x[i] += piece.push;
+        for (int i : piece.nodes)
+            result.x[i] += piece.push;
     return result;
 }
 

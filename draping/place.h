@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-// A start that contact can take: panels that lie in the body, in each other or too near to either are pushed clear.
+// A start that contact can take: panels that lie in the body, in each other or too near to either are pushed
+// clear.
 
 #include "geometry/tri_mesh.h"
 #include "sewing/garment.h"
@@ -28,12 +29,18 @@ struct PlacedClear {
     std::vector<int> left;         ///< panels for which no push was found: they stay where they were
 };
 
-/// Pushes panels clear one after another, those of lower layers and those nearest to the body first: each by the
-/// smallest step along its own normal, to either side, or horizontally away from the body's middle, that leaves it
-/// outside the body and at the distances that the options ask for. Panels that keep them where they are stay.
-/// Panels may touch where stitches of no length join them, as long as neither is moved against the other. `garment`
-/// is open (a node per vertex); a panel's contact with itself is not looked at.
+/// Pushes panels clear one after another, those of lower layers and those nearest to the body first: each by
+/// the smallest step along its own normal, to either side, or horizontally away from the body's middle, that
+/// leaves it outside the body and at the distances that the options ask for. Panels that keep them where they
+/// are stay. Panels may touch where stitches of no length join them, as long as neither is moved against the
+/// other. `garment` is open (a node per vertex); a panel's contact with itself is not looked at.
 PlacedClear place_clear(const Garment& garment, const Points& x, const TriMesh& body,
                         const PlaceOptions& options = {});
+
+/// How far, in metres, the garment as a whole should be moved up (or, negative, down), within 20 cm, that
+/// fewer threads of its open seams pass through the body: shoulder seams that must close above the shoulder,
+/// inner leg seams that must close below the crotch. 0 where moving frees less than two metres of seam per
+/// metre.
+double free_height(const Garment& garment, const Points& x, const TriMesh& body);
 
 } // namespace toile

@@ -20,7 +20,8 @@ struct Cloth {
     Points x;
 };
 
-/// Adds a square panel of 20 cm in 10 x 10 cells about `middle`, spanned by u and v; its front looks along u x v.
+/// Adds a square panel of 20 cm in 10 x 10 cells about `middle`, spanned by u and v; its front looks along u
+/// x v.
 void add_panel(Cloth& c, const Vec3& middle, const Vec3& u, const Vec3& v, int layer = 0) {
     constexpr int n = 10;
     Garment& g = c.garment;
@@ -63,13 +64,16 @@ double distance_between(const TriMesh& a, const TriMesh& b) {
     for (const Triangle& s : a.triangles)
         for (const Triangle& t : b.triangles)
             for (int i = 0; i < 3; ++i) {
-                least = std::min(least, nearest_point_triangle(corner(a, s, i), corner(b, t, 0), corner(b, t, 1),
-                                                               corner(b, t, 2)).squared);
-                least = std::min(least, nearest_point_triangle(corner(b, t, i), corner(a, s, 0), corner(a, s, 1),
-                                                               corner(a, s, 2)).squared);
+                least = std::min(least, nearest_point_triangle(corner(a, s, i), corner(b, t, 0),
+                                                               corner(b, t, 1), corner(b, t, 2))
+                                            .squared);
+                least = std::min(least, nearest_point_triangle(corner(b, t, i), corner(a, s, 0),
+                                                               corner(a, s, 1), corner(a, s, 2))
+                                            .squared);
                 for (int j = 0; j < 3; ++j)
-                    least = std::min(least, nearest_edge_edge(corner(a, s, i), corner(a, s, i + 1), corner(b, t, j),
-                                                              corner(b, t, j + 1)).squared);
+                    least = std::min(least, nearest_edge_edge(corner(a, s, i), corner(a, s, i + 1),
+                                                              corner(b, t, j), corner(b, t, j + 1))
+                                                .squared);
             }
     return std::sqrt(least);
 }
@@ -136,7 +140,8 @@ TEST_CASE("crossing panels are separated, from the body too") {
     const PlacedClear placed = place_clear(c.garment, c.x, body);
     CHECK(placed.left.empty());
     CHECK(distance_between(panel_mesh(c, placed.x, 0), panel_mesh(c, placed.x, 1)) >= 0.002 - 1e-12);
-    for (int panel : {0, 1}) CHECK(distance_between(panel_mesh(c, placed.x, panel), body) >= 0.005 - 1e-12);
+    for (int panel : {0, 1})
+        CHECK(distance_between(panel_mesh(c, placed.x, panel), body) >= 0.005 - 1e-12);
 }
 
 TEST_CASE("panels that a seam joins at no distance may touch there") {
@@ -183,9 +188,28 @@ TEST_CASE("panels that share nodes are pushed as one") {
     Cloth c;
     add_front(c, {-0.1, 0, 0.09});
     add_front(c, {0.1, 0, 0.09});
-    for (int j = 0; j <= 10; ++j) c.garment.node_of_vertex[121 + 11 * j] = 11 * j + 10;
+    for (int j = 0; j <= 10; ++j)
+        c.garment.node_of_vertex[121 + 11 * j] = 11 * j + 10;
     c.garment.edges = make_edges(node_triangles(c.garment), c.garment.node_count);
     const PlacedClear placed = place_clear(c.garment, c.x, sphere(0.1, 4));
     REQUIRE(placed.pushed.size() == 2);
     CHECK(push_of(placed, 0) == push_of(placed, 1));
+}
+
+TEST_CASE("a garment moves up as a whole where its seams can close over the body, and only there") {
+    // Front and back that end 3 cm below the top of a ball and are to be sewn together there.
+    const auto height_of = [](double top) {
+        Cloth c;
+        add_front(c, {0, top - 0.1, 0.2});
+        add_front(c, {0, top - 0.1, -0.2});
+        for (int i = 0; i <= 10; ++i)
+            c.garment.stitches.push_back({110 + i, {231 + i, 231 + i}, 0, 0, 0.02});
+        return free_height(c.garment, c.x, sphere(0.1, 4));
+    };
+    CHECK(height_of(0.065) == Approx(0.04));
+    CHECK(height_of(0.12) == 0);
+    CHECK(height_of(-0.065) == Approx(-0.04));
+    Cloth unsewn;
+    add_front(unsewn, {0, 0, 0});
+    CHECK(free_height(unsewn.garment, unsewn.x, sphere(0.1, 4)) == 0);
 }

@@ -28,6 +28,7 @@ constexpr double seam_pull = 6;          // N per metre of seam: what a far open
 constexpr double weld_gap = 2e-4;        // m, below which a seam is closed for good
 constexpr double contact_share = 0.06;   // of the edge length: contact distance of levels that are not the last
 constexpr double barrier_stiffness = 1e7; // Pa/m for a cloth of 0.15 kg/m2 at a distance of half a millimetre
+constexpr double cloth_stiffness = 0.1;   // of the barrier, between cloth and cloth, which press lightly
 constexpr double sewing_softness = 0.1;   // of the barrier while seams are pulled shut, which takes little force
 constexpr double floor_share = 0.1;      // of the contact distance that is never entered
 constexpr double grow_distance = 2e-3;   // m, contact distance while the body grows back
@@ -162,6 +163,7 @@ struct Run {
         c.body.floor = floor_share * distance;
         c.body.stiffness = barrier_stiffness * std::max(0.05, density) / 0.15 * (0.5e-3 / distance);
         c.cloth = c.body;
+        c.cloth.stiffness *= cloth_stiffness;
         return c;
     }
 };
@@ -613,7 +615,7 @@ void settle_level(Run& run) {
         }
     }
     run.result.residual = r.residual;
-    run.result.barrier = {contact.body.distance, contact.body.stiffness};
+    run.result.barrier = {contact.body.distance, contact.body.stiffness, contact.cloth.stiffness};
     if (run.last_level()) {
         const int beyond = int(problem.beyond_limits(run.x).size());
         note_facts(run, problem);

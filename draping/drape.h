@@ -58,6 +58,7 @@ struct Landmark {
 struct BarrierReport {
     double distance = 0;  ///< m, below which contact acts
     double stiffness = 0; ///< Pa/m: pressure per depth below `distance` near it
+    double cloth_stiffness = 0; ///< Pa/m, the same between cloth and cloth
 };
 
 /// A drape and by how much it met each promise.

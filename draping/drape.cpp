@@ -39,6 +39,7 @@ constexpr double slid = 0.10;            // m below its place at which a held ed
 constexpr double coarse_compression = 0.2; // of the fabric's, on levels that are not the last
 constexpr double coarse_residual = 10;    // to which levels that are not the last are settled
 
+constexpr int most_iterations = 1000;      // of the last pass of a level
 constexpr double forced_share = 0.05;    // of the edge length: a gap below which a seam may be joined by force
 constexpr double inner_stitch_stiffness = 1e5; // N/m, of stitches to the inside of an edge once seams are closed
 constexpr double tight = 2e-3;           // m by which a section must be too short to count as too small
@@ -584,9 +585,9 @@ void settle_level(Run& run) {
     };
     // A carrying edge finds the height at which it fits before friction may hold it, since a tight band on a slight
     // cone is held by friction at any height.
-    std::vector<Pass> passes{{1.0 / 4, 8, false}, {1, 600, false}};
-    if (first) passes = {{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, run.last_level() ? 600 : 150, false}};
-    if (run.facts.restarted) passes = {{1, 600, false}};
+    std::vector<Pass> passes{{1.0 / 4, 8, false}, {1, most_iterations, false}};
+    if (first) passes = {{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, run.last_level() ? most_iterations : 150, false}};
+    if (run.facts.restarted) passes = {{1, most_iterations, false}};
     if (problem.hooks.size() > kept.size()) {
         passes.insert(passes.end() - 1, {1, 100, true});
         problem.friction.coefficient = 0;

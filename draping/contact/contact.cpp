@@ -14,8 +14,11 @@ namespace {
 
 constexpr double keep_of_gap = 0.2;       // a step leaves at least this share of every gap
 constexpr double least_slack = 0.0015;    // m; a list serves at least for motions of this size
-constexpr double slack_per_step = 3;      // and for this many steps of the present size
+constexpr double slack_per_step = 3;      // and for this many steps of the present size, but for long ones,
+constexpr double most_slack = 0.005;      // m, whose lists would grow too long
 constexpr int query_chunk = 64;
+
+double slack_for(double step) { return std::max(step, std::min(slack_per_step * step, most_slack)); }
 
 Box ball_box(const Vec3& p, double r) { return Box(p.array() - r, p.array() + r); }
 
@@ -177,10 +180,10 @@ void Contact::prepare(const Points& x, const Eigen::VectorXd& dx, const Points* 
 
     slack_.resize(nodes_);
     for (int i = 0; i < nodes_; ++i)
-        slack_[i] = std::max(least_slack, slack_per_step * dx.segment<3>(3 * i).norm());
+        slack_[i] = std::max(least_slack, slack_for(dx.segment<3>(3 * i).norm()));
     bool body_moves = false;
     for (std::size_t v = 0; v < body_.size(); ++v) {
-        body_slack_[v] = body_dx ? slack_per_step * (*body_dx)[v].norm() : 0;
+        body_slack_[v] = body_dx ? slack_for((*body_dx)[v].norm()) : 0;
         body_moves = body_moves || body_slack_[v] > 0 || body_[v] != body_built_at_[v];
     }
     if (body_moves) make_body_trees();

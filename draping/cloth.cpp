@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/cloth.h"
 
+#include "geometry/disjoint_sets.h"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -42,18 +44,12 @@ ContactCloth contact_cloth(const Garment& g) {
     for (const Stitch& s : g.stitches)
         if (s.r > 0 && s.r < 1) c.sewn_to_edge.push_back({s.a, s.b[0], s.b[1]});
     // Nodes that stitches will merge count as one.
-    c.group.resize(g.node_count);
-    for (int i = 0; i < g.node_count; ++i) c.group[i] = i;
-    const auto root = [&](int i) {
-        while (c.group[i] != i) i = c.group[i];
-        return i;
-    };
+    DisjointSets merged(g.node_count);
     for (const Stitch& s : g.stitches) {
         if (s.r != 0) continue;
-        const int a = root(s.a), b = root(s.b[0]);
-        c.group[std::max(a, b)] = std::min(a, b);
+        merged.join(s.a, s.b[0]);
     }
-    for (int i = 0; i < g.node_count; ++i) c.group[i] = root(i);
+    c.group = merged.all();
     return c;
 }
 

@@ -68,7 +68,7 @@ Points vertex_normals(const TriMesh& mesh) {
 
 double mean_gap(const Garment& g, const Points& x) {
     double sum = 0;
-    for (const Stitch& s : g.stitches) sum += (x[s.a] - (1 - s.r) * x[s.b[0]] - s.r * x[s.b[1]]).norm();
+    for (const Stitch& s : g.stitches) sum += stitch_gap(s, x);
     return g.stitches.empty() ? 0 : sum / double(g.stitches.size());
 }
 
@@ -255,7 +255,7 @@ Points merge(const Garment& closed, const std::vector<int>& map, const Points& x
 void close_what_is_closed(Run& run, const Garment& open, const Points& x) {
     Garment closable = open;
     const auto gapes = [&](const Stitch& s) {
-        return (x[s.a] - (1 - s.r) * x[s.b[0]] - s.r * x[s.b[1]]).norm() >= weld_gap;
+        return stitch_gap(s, x) >= weld_gap;
     };
     std::erase_if(closable.stitches, gapes);
     std::vector<int> map;
@@ -334,16 +334,16 @@ double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Po
     return last;
 }
 
-/// One way to sew the coarsest level.
-struct Sewing {
-    bool self = true;  ///< with contact between panels
-    double lift = 0;   ///< m, by which the garment is moved up as a whole
+/// A start of the coarsest level.
+struct Start {
+    double lift = 0; ///< m, by which the garment was moved up as a whole
+    PlacedClear placed;
 };
 
 struct Sewn {
-    PlacedClear placed;
+    Start start;
+    bool self = true;        ///< with contact between panels
     Points x;                ///< nodes of the open garment
-    Sewing way;
     double gap = 0;          ///< m, the widest that is left
     int crossings = 0;       ///< pairs of triangles of the closed garment
     bool open = false;       ///< it is too wide to be joined
@@ -380,21 +380,24 @@ void note_pushes(Run& run, const PlacedClear& placed) {
                                             p.from_body ? "out of the body" : "clear of another panel"));
 }
 
-Sewn sew_open(Run& run, const Sewing& way) {
-    const Garment& open = run.staging.levels[0].garment;
+Start place(const Run& run, double lift) {
     Points lifted = run.staging.levels[0].placed;
-    for (Vec3& p : lifted) p.y() += way.lift;
-    Sewn sewn{place_clear(open, lifted, run.body, place_options(run)), {}, way};
-    sewn.x = sewn.placed.x;
+    for (Vec3& p : lifted) p.y() += lift;
+    return {lift, place_clear(run.staging.levels[0].garment, lifted, run.body, place_options(run))};
+}
+
+Sewn sew_open(Run& run, const Start& start, bool self) {
+    const Garment& open = run.staging.levels[0].garment;
+    Sewn sewn{start, self, start.placed.x};
     ContactOptions contact = run.contact_options();
-    contact.self = way.self;
+    contact.self = self;
     contact.body.stiffness *= sewing_softness;
     contact.cloth.stiffness *= sewing_softness;
     ClothProblem problem(open, run.fabrics, run.body, contact);
     problem.sheet().softness = 1.0 / 16;
     for (const Stitch& s : open.stitches)
         problem.stitches.push_back({s.a, s.b, s.r, seam_stiffness * s.length, seam_pull * s.length});
-    if (way.lift == 0) problem.hooks = hooks_on(run, open, all_hooked(run), problem);
+    if (start.lift == 0) problem.hooks = hooks_on(run, open, all_hooked(run), problem);
     for (const auto& [node, place] : pinned_places(run.staging, 0, open)) problem.pin(node);
     Cholesky factor;
     sewn.gap = close_open_seams(run, open, problem, sewn.x, factor);
@@ -403,12 +406,9 @@ Sewn sew_open(Run& run, const Sewing& way) {
     return sewn;
 }
 
-/// Joins what was sewn. Returns how many pairs of the closed garment's triangles cross.
-int join(Run& run, const Sewn& sewn) {
-    std::vector<int> map;
-    run.garment = close_seams(run.staging.levels[0].garment, &map);
-    run.x = merge(run.garment, map, sewn.x);
-    return count_intersections(node_triangles(run.garment), run.x, run.body, run.garment.stitches).cloth_cloth;
+/// Pairs of triangles of a closed garment that cross.
+int crossings(const Garment& closed, const Points& x) {
+    return count_intersections(node_triangles(closed), x, {}, closed.stitches).cloth_cloth;
 }
 
 /// Places and sews the coarsest level: where the file puts the garment, else moved up or down as a whole to where
@@ -419,34 +419,36 @@ void sew_coarsest(Run& run) {
     const StagedLevel& staged = run.staging.levels[0];
     run.result.levels.push_back({staged.edge_length, int(staged.garment.uv.size()), 0, 0, 0});
     run.begin("sew", 0.15);
-    const double lift = run.staging.pins.empty() ? free_height(staged.garment, staged.placed, run.body) : 0;
-    std::vector<Sewing> ways{{true, 0}, {false, 0}};
-    if (lift != 0) ways.insert(ways.end(), {{true, lift}, {false, lift}});
+    std::vector<int> map;
+    run.garment = close_seams(staged.garment, &map);
     Sewn sewn;
-    const auto worse = [](const Sewn& a, const Sewn& b) {
-        return std::tie(b.open, b.crossings, b.gap) < std::tie(a.open, a.crossings, a.gap);
+    const auto try_from = [&](const Start& from) {
+        for (const bool self : {true, false}) {
+            Sewn next = sew_open(run, from, self);
+            next.crossings = crossings(run.garment, merge(run.garment, map, next.x));
+            const auto badness = [](const Sewn& s) { return std::tie(s.open, s.crossings, s.gap); };
+            if (sewn.x.empty() || badness(next) < badness(sewn)) sewn = std::move(next);
+            if (run.stopped || (sewn.gap < weld_gap && sewn.crossings == 0)) return;
+        }
     };
-    for (const Sewing& way : ways) {
-        if (way.self && !sewn.x.empty() && !sewn.open) break;
-        Sewn next = sew_open(run, way);
-        next.crossings = join(run, next);
-        if (sewn.x.empty() || worse(sewn, next)) sewn = std::move(next);
-        if (run.stopped || (sewn.gap < weld_gap && sewn.crossings == 0)) break;
-    }
-    join(run, sewn);
-    if (sewn.way.lift != 0)
+    try_from(place(run, 0));
+    if (sewn.open && !run.stopped && run.staging.pins.empty())
+        if (const double lift = free_height(staged.garment, staged.placed, run.body); lift != 0)
+            try_from(place(run, lift));
+    run.x = merge(run.garment, map, sewn.x);
+    if (sewn.start.lift != 0)
         run.result.decisions.push_back(
             text("the garment was moved %s by %.0f mm before sewing: where the file puts it threads of seams that "
                  "could not close pass through the body",
-                 sewn.way.lift > 0 ? "up" : "down", 1e3 * std::abs(sewn.way.lift)));
-    note_pushes(run, sewn.placed);
+                 sewn.start.lift > 0 ? "up" : "down", 1e3 * std::abs(sewn.start.lift)));
+    note_pushes(run, sewn.start.placed);
     run.open = sewn.open;
     if (run.open) { // joined by force it would cut itself or the body
         run.result.status = sewn.status;
         run.result.where = sewn.where;
         close_what_is_closed(run, staged.garment, sewn.x);
     } else if (!run.stopped) {
-        if (!sewn.way.self && sewn.crossings == 0)
+        if (!sewn.self && sewn.crossings == 0)
             run.result.decisions.push_back("cloth passed through itself while seams closed: with contact "
                                            "between panels a seam could not close; the sewn garment does "
                                            "not cross itself (0 pairs)");
@@ -505,11 +507,15 @@ void clear_of_body(Run& run, ClothProblem& problem, Cholesky& factor) {
     problem.contact().set_options(final);
 }
 
+TangledCloth tangled_cloth(const Run& run) {
+    ContactCloth cloth = contact_cloth(run.garment);
+    return {std::move(cloth.triangles), run.garment.edges, run.edge_length(), std::move(cloth.sewn_to_edge)};
+}
+
 /// Cloth that crosses itself after sewing, or only on the finer mesh, is taken apart before contact takes over.
 /// Returns whether nothing crosses and nothing is too near.
 bool take_apart(Run& run, Contact& contact) {
-    const ContactCloth cloth = contact_cloth(run.garment);
-    const TangledCloth tangled{cloth.triangles, run.garment.edges, run.edge_length(), cloth.sewn_to_edge};
+    const TangledCloth tangled = tangled_cloth(run);
     for (int round = 0; round < 10; ++round) {
         const Untangled u = untangle(tangled, run.x);
         run.facts.untangled = std::max(run.facts.untangled, u.before);
@@ -654,9 +660,7 @@ void prove(Run& run) {
     run.result.status = DrapeStatus::stalled;
     run.result.where = text("%d triangle pairs of cloth and body and %d of cloth and cloth cross", n.cloth_avatar,
                             n.cloth_cloth);
-    const ContactCloth cloth = contact_cloth(run.garment);
-    const std::vector<ClothCrossing> own =
-        find_crossings({cloth.triangles, run.garment.edges, run.edge_length(), cloth.sewn_to_edge}, run.x);
+    const std::vector<ClothCrossing> own = find_crossings(tangled_cloth(run), run.x);
     if (!own.empty()) run.result.where += ", the first on " + place_of_triangle(run.garment, run.x, own[0].triangle);
 }
 
@@ -682,11 +686,10 @@ void decide(Run& run) {
 bool start_again(Run& run) {
     if (run.options.from.empty()) return false;
     const Garment closed = close_seams(run.staging.levels.back().garment);
-    const int crossings = count_intersections(node_triangles(closed), run.options.from, {}, closed.stitches).cloth_cloth;
-    if (crossings > 0) {
+    if (const int pairs = crossings(closed, run.options.from); pairs > 0) {
         run.result.decisions.push_back(text("the earlier drape was not taken as a start: after the edit %d pairs of "
                                             "its triangles would cross",
-                                            crossings));
+                                            pairs));
         return false;
     }
     run.level = run.levels() - 1;

@@ -284,7 +284,7 @@ EaseMeasure measure_ease(const Garment& garment, const Points& x, const TriMesh&
 double seam_gap_max(const Garment& garment, const Points& x) {
     double gap = 0;
     for (const Stitch& s : garment.stitches)
-        gap = std::max(gap, (x[s.a] - (1 - s.r) * x[s.b[0]] - s.r * x[s.b[1]]).norm());
+        gap = std::max(gap, stitch_gap(s, x));
     return gap;
 }
 

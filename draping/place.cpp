@@ -2,6 +2,7 @@
 #include "draping/place.h"
 
 #include "geometry/bvh.h"
+#include "geometry/disjoint_sets.h"
 #include "geometry/distance.h"
 
 #include <algorithm>
@@ -27,12 +28,7 @@ Corners corners_of(const Points& x, const Triangle& t) {
 
 /// Whether the segment from a to b passes through the triangle.
 bool pierces(const Vec3& a, const Vec3& b, const Corners& t) {
-    const Vec3 u = t[1] - t[0], v = t[2] - t[0], d = b - a, p = d.cross(v);
-    const double det = u.dot(p);
-    if (det == 0) return false;
-    const Vec3 to = a - t[0], q = to.cross(u);
-    const double r = to.dot(p) / det, s = d.dot(q) / det, at = v.dot(q) / det;
-    return r >= 0 && s >= 0 && r + s <= 1 && at >= 0 && at <= 1;
+    return segment_through_triangle(a, b, t[0], t[1], t[2]).has_value();
 }
 
 /// Whether two triangles cross or are nearer than `distance`.
@@ -93,20 +89,12 @@ struct Placing {
 
 void find_groups(Placing& p) {
     const Garment& g = p.garment;
-    p.group.resize(g.node_count);
-    std::iota(p.group.begin(), p.group.end(), 0);
-    const auto root = [&](int i) {
-        while (p.group[i] != i)
-            i = p.group[i];
-        return i;
-    };
+    DisjointSets joined(g.node_count);
     for (const Stitch& s : g.stitches) {
         if (s.r != 0 || (p.x[s.a] - p.x[s.b[0]]).norm() > no_length) continue;
-        const int a = root(s.a), b = root(s.b[0]);
-        p.group[std::max(a, b)] = std::min(a, b);
+        joined.join(s.a, s.b[0]);
     }
-    for (int& i : p.group)
-        i = root(i);
+    p.group = joined.all();
     p.ring.resize(g.node_count);
     for (const auto& [a, b] : g.edges.ends) {
         p.ring[p.group[a]].push_back(p.group[b]);
@@ -144,23 +132,18 @@ double wanted_distance(const Placing& p, int s, int t) {
 
 /// Numbers in the order of their first panels.
 std::vector<int> pieces_of_panels(const Garment& g) {
-    std::vector<int> root(g.panel_names.size()), first(g.node_count, -1);
-    std::iota(root.begin(), root.end(), 0);
-    const auto find = [&](int i) {
-        while (root[i] != i)
-            i = root[i];
-        return i;
-    };
+    DisjointSets together(int(g.panel_names.size()));
+    std::vector<int> first(g.node_count, -1);
     for (std::size_t v = 0; v < g.node_of_vertex.size(); ++v) {
         int& other = first[g.node_of_vertex[v]];
         if (other < 0) other = g.panel_of_vertex[v];
-        const int a = find(other), b = find(g.panel_of_vertex[v]);
-        root[std::max(a, b)] = std::min(a, b);
+        together.join(other, g.panel_of_vertex[v]);
     }
+    const std::vector<int> root = together.all();
     std::vector<int> number(root.size());
     int count = 0;
     for (int i = 0; i < int(root.size()); ++i)
-        number[i] = root[i] == i ? count++ : number[find(i)];
+        number[i] = root[i] == i ? count++ : number[root[i]];
     return number;
 }
 
@@ -298,7 +281,7 @@ bool find_push(const Placing& p, Piece& piece, const Vec3& axis) {
 double blocked_seam(const Placing& p, const Vec3& move) {
     double blocked = 0;
     for (const Stitch& s : p.garment.stitches) {
-        const Vec3 a = p.x[s.a] + move, b = (1 - s.r) * p.x[s.b[0]] + s.r * p.x[s.b[1]] + move;
+        const Vec3 a = p.x[s.a] + move, b = seam_point(s, p.x) + move;
         Box thread;
         thread.extend(a);
         thread.extend(b);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/where.h"
 
+#include "geometry/distance.h"
+
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -29,18 +31,10 @@ std::string on_panel(const Garment& g, int panel, const Vec3& at) {
     return (panel < 0 ? "" : "panel \"" + g.panel_names[panel] + "\" ") + "at " + coordinates(at);
 }
 
-Vec3 seam_point(const Stitch& s, const Points& x) {
-    return (1 - s.r) * x[s.b[0]] + s.r * x[s.b[1]];
-}
-
-/// Share of the way from a to b at which a triangle is crossed; infinity when it is not.
+/// Share of the way from a to b at which a triangle is crossed between them; infinity when it is not.
 double crossing(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q, const Vec3& r) {
-    constexpr double none = std::numeric_limits<double>::infinity();
-    Mat3 m;
-    m << a - b, q - p, r - p;
-    if (std::abs(m.determinant()) < 1e-18) return none;
-    const Vec3 s = m.inverse() * (a - p);
-    return s[0] > 0 && s[0] < 1 && s[1] >= 0 && s[2] >= 0 && s[1] + s[2] <= 1 ? s[0] : none;
+    const auto at = segment_through_triangle(a, b, p, q, r);
+    return at && at->along > 0 && at->along < 1 ? at->along : std::numeric_limits<double>::infinity();
 }
 
 /// The middle of the thread's way through the body.

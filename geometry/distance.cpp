@@ -126,4 +126,21 @@ Vec3 gap_edge_edge(const Nearest& n, const std::array<Vec3, 4>& x) {
     return (x[2] - x[0]) + n.weight[3] * (x[3] - x[2]) - n.weight[1] * (x[1] - x[0]);
 }
 
+std::optional<Passage> segment_through_triangle(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q,
+                                                const Vec3& r) {
+    const Vec3 normal = (q - p).cross(r - p), direction = b - a;
+    const double closing = normal.dot(direction);
+    if (closing == 0) return std::nullopt;
+    Passage passage;
+    passage.along = normal.dot(p - a) / closing;
+    if (!(passage.along >= 0 && passage.along <= 1)) return std::nullopt;
+    const Vec3 at = a + passage.along * direction;
+    const Vec3* corner[] = {&p, &q, &r};
+    for (int k = 0; k < 3; ++k)
+        passage.corner[k] =
+            normal.dot((*corner[(k + 1) % 3] - at).cross(*corner[(k + 2) % 3] - at)) / normal.squaredNorm();
+    if (!(passage.corner.minCoeff() >= 0)) return std::nullopt;
+    return passage;
+}
+
 } // namespace toile

@@ -6,6 +6,8 @@
 
 #include "geometry/types.h"
 
+#include <optional>
+
 namespace toile {
 
 /// Nearest points of two simplices: distance squared and the barycentric weights on each.
@@ -23,6 +25,16 @@ Nearest nearest_edge_edge(const Vec3& a0, const Vec3& a1, const Vec3& b0, const 
 
 /// Nearest point of a segment to p, as its parameter in [0, 1]; 0 for a segment of no length.
 double nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b);
+
+/// Where a segment passes through a triangle.
+struct Passage {
+    double along = 0; ///< of the segment, [0, 1]
+    Vec3 corner;      ///< barycentric coordinates in the triangle
+};
+
+/// Where the segment a b passes through the triangle, borders included; nothing when it does not, or runs along it.
+std::optional<Passage> segment_through_triangle(const Vec3& a, const Vec3& b, const Vec3& p, const Vec3& q,
+                                                const Vec3& r);
 
 /// From the nearest point of the first simplex to that of the second: point - triangle point is `x` = p, a,
 /// b, c, edge - edge is a0, a1, b0, b1. Differences are taken first, so that a small gap far from the origin

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/edges.h"
 
+#include "geometry/disjoint_sets.h"
+
 #include <algorithm>
 #include <stdexcept>
 #include <string>
@@ -49,12 +51,6 @@ std::vector<HalfEdge> bucket_by_low_end(const std::vector<Triangle>& triangles, 
     return halves;
 }
 
-int root(std::vector<int>& parent, int i) {
-    while (parent[i] != i)
-        i = parent[i] = parent[parent[i]];
-    return i;
-}
-
 } // namespace
 
 EdgeTable make_edges(const std::vector<Triangle>& triangles, int point_count) {
@@ -85,17 +81,11 @@ EdgeTable make_edges(const std::vector<Triangle>& triangles, int point_count) {
 }
 
 std::vector<int> pieces(const std::vector<Triangle>& triangles, int point_count) {
-    std::vector<int> parent(point_count);
-    for (int i = 0; i < point_count; ++i)
-        parent[i] = i;
+    DisjointSets sets(point_count);
     for (const Triangle& t : triangles)
-        for (int k = 1; k < 3; ++k) {
-            const int a = root(parent, t[0]), b = root(parent, t[k]);
-            parent[std::max(a, b)] = std::min(a, b);
-        }
-    for (int i = 0; i < point_count; ++i)
-        parent[i] = root(parent, i);
-    return parent;
+        for (int k = 1; k < 3; ++k)
+            sets.join(t[0], t[k]);
+    return sets.all();
 }
 
 int count_pieces(const std::vector<Triangle>& triangles, int point_count) {

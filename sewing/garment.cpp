@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sewing/garment.h"
 
+#include "geometry/disjoint_sets.h"
 #include "patterns/curve.h"
 
 #include <algorithm>
@@ -93,29 +94,21 @@ void mark_seams(const Pattern& pattern, const FlatLevel& flat, Garment& g) {
         g.eased_triangle.push_back(on_eased[t[0]] || on_eased[t[1]] || on_eased[t[2]]);
 }
 
-int find(std::vector<int>& parent, int i) {
-    while (parent[i] != i)
-        i = parent[i] = parent[parent[i]];
-    return i;
-}
-
 /// The new node of every old one, numbered by the smallest vertex of each.
 std::vector<int> merge_nodes(const Garment& g, int& count) {
-    std::vector<int> parent(g.node_count);
-    std::iota(parent.begin(), parent.end(), 0);
+    DisjointSets sets(g.node_count);
     for (const Stitch& s : g.stitches) {
         if (s.r != 0 && s.r != 1) continue;
-        const int a = find(parent, s.a), b = find(parent, s.b[s.r == 1 ? 1 : 0]);
-        parent[std::max(a, b)] = std::min(a, b);
+        sets.join(s.a, s.b[s.r == 1 ? 1 : 0]);
     }
     std::vector<int> number(g.node_count, -1), map(g.node_count);
     count = 0;
     for (int node : g.node_of_vertex) { // vertices ascending
-        int& n = number[find(parent, node)];
+        int& n = number[sets.find(node)];
         if (n < 0) n = count++;
     }
     for (int node = 0; node < g.node_count; ++node)
-        map[node] = number[find(parent, node)];
+        map[node] = number[sets.find(node)];
     return map;
 }
 

@@ -24,6 +24,12 @@ struct Stitch {
     double length = 0; ///< metres of seam that the stitch stands for
 };
 
+/// The point of the edge b that a stitch joins its node to, and how far the node still is from it.
+inline Vec3 seam_point(const Stitch& s, const Points& x) { return (1 - s.r) * x[s.b[0]] + s.r * x[s.b[1]]; }
+inline double stitch_gap(const Stitch& s, const Points& x) {
+    return (x[s.a] - (1 - s.r) * x[s.b[0]] - s.r * x[s.b[1]]).norm();
+}
+
 /// Nodes along a stretch of cut border, kept by name: what hooks, pins, elastics and landmarks refer to.
 struct BorderLine {
     std::string label;

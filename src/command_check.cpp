@@ -78,7 +78,7 @@ int check_staged(const CheckArguments& a, const Console& console) {
     for (const Stitch& s : g.stitches) {
         inside += s.r > 0;
         ++stitches[s.seam];
-        gap[s.seam] = std::max(gap[s.seam], (x[s.a] - (1 - s.r) * x[s.b[0]] - s.r * x[s.b[1]]).norm());
+        gap[s.seam] = std::max(gap[s.seam], stitch_gap(s, x));
     }
     Json json{{"issues", Json::array()}, {"panels", Json::array()}, {"seams", Json::array()}};
     for (const std::string& note : input.notes)

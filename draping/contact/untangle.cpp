@@ -19,19 +19,6 @@ constexpr double straight = 0.2;     // length of the summed directions below wh
 
 Vec3 normal_of(const Points& x, const Triangle& t) { return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]); }
 
-/// Where the segment a b passes through the triangle, as {along, u, v, w}; false when it does not.
-bool crosses(const Points& x, const std::array<int, 2>& e, const Triangle& t, double& along, Vec3& corner) {
-    const Vec3 normal = normal_of(x, t), direction = x[e[1]] - x[e[0]];
-    const double closing = normal.dot(direction);
-    if (closing == 0) return false;
-    along = normal.dot(x[t[0]] - x[e[0]]) / closing;
-    if (!(along >= 0 && along <= 1)) return false;
-    const Vec3 p = x[e[0]] + along * direction;
-    for (int k = 0; k < 3; ++k)
-        corner[k] = normal.dot((x[t[(k + 1) % 3]] - p).cross(x[t[(k + 2) % 3]] - p)) / normal.squaredNorm();
-    return corner.minCoeff() >= 0;
-}
-
 /// Sum over the triangles at the edge of the unit directions in which the crossing goes on from the edge into each.
 Vec3 contour_direction(const TangledCloth& cloth, const Points& x, const ClothCrossing& c, const Vec3& normal) {
     const auto& ends = cloth.edges.ends[c.edge];
@@ -81,8 +68,8 @@ std::vector<ClothCrossing> find_crossings(const TangledCloth& cloth, const Point
             tree.overlapping(box, [&](int t) {
                 const Triangle& k = cloth.triangles[t];
                 if (std::any_of(k.begin(), k.end(), [&](int i) { return joined(i, ends[0]) || joined(i, ends[1]); })) return;
-                ClothCrossing c{e, t, 0, Vec3::Zero()};
-                if (crosses(x, ends, k, c.along, c.corner)) found[begin / chunk].push_back(c);
+                const auto at = segment_through_triangle(x[ends[0]], x[ends[1]], x[k[0]], x[k[1]], x[k[2]]);
+                if (at) found[begin / chunk].push_back({e, t, *at});
             });
             std::sort(found[begin / chunk].begin() + first, found[begin / chunk].end(),
                       [](const ClothCrossing& a, const ClothCrossing& b) { return a.triangle < b.triangle; });
@@ -114,9 +101,9 @@ Untangled untangle(const TangledCloth& cloth, Points& x, int max_rounds) {
                 step[node] += sign * share * g;
                 weight[node] += share;
             };
-            add(ends[0], 1 - c.along, 0.5);
-            add(ends[1], c.along, 0.5);
-            for (int k = 0; k < 3; ++k) add(t[k], c.corner[k], -0.5);
+            add(ends[0], 1 - c.at.along, 0.5);
+            add(ends[1], c.at.along, 0.5);
+            for (int k = 0; k < 3; ++k) add(t[k], c.at.corner[k], -0.5);
         }
         for (std::size_t i = 0; i < x.size(); ++i)
             if (weight[i] > 0) step[i] /= std::max(weight[i], 0.5);

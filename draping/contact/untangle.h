@@ -5,14 +5,14 @@
 // Magnenat-Thalmann: Resolving Surface Collisions through Intersection Contour Minimization, 2006. It needs no
 // history and no idea of inside and outside, and pulls a contour that ends at a border out over the border.
 
-#include "geometry/types.h"
+#include "geometry/distance.h"
 #include "geometry/edges.h"
 
 namespace toile {
 
 /// The cloth and how coarse it is.
 struct TangledCloth {
-    const std::vector<Triangle>& triangles; ///< over nodes
+    std::vector<Triangle> triangles;        ///< over nodes
     const EdgeTable& edges;                 ///< of these triangles
     double edge_length = 0;                 ///< m, mean
     std::vector<std::array<int, 3>> sewn_to_edge = {}; ///< as in ContactCloth: what is sewn on touches there
@@ -21,8 +21,7 @@ struct TangledCloth {
 /// An edge that passes through a triangle with which it shares no node.
 struct ClothCrossing {
     int edge = 0, triangle = 0;
-    double along = 0;  ///< of the edge, [0, 1]
-    Vec3 corner;       ///< barycentric coordinates in the triangle
+    Passage at;
 };
 
 /// Sorted by edge and triangle. In plain floating point: a look by exact predicates has the last word.

@@ -35,7 +35,6 @@ struct Run {
     const SettleOptions& options;
     SettleResult result;
     bool analysed = false, factored = false;
-    VectorXd work;
 
     void analyse_if(bool pattern_changed, const BlockMatrix& h) {
         if (analysed && !pattern_changed) return;
@@ -153,7 +152,7 @@ struct Run {
 } // namespace
 
 SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleOptions& options) {
-    Run run{problem, factor, options, {}, false, false, {}};
+    Run run{problem, factor, options, {}, false, false};
     SettleResult& result = run.result;
     VectorXd g, dx, hdx, shift;
     double h = options.time_step;

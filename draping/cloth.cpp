@@ -169,7 +169,9 @@ double ClothProblem::value(const Points& x) {
     return sum + contact_.value(contact_.active(x));
 }
 
-void ClothProblem::gradient(const Points& x, Eigen::VectorXd& g) {
+void ClothProblem::gradient(const Points& x, Eigen::VectorXd& g) { gradient_with(active_, x, g); }
+
+void ClothProblem::gradient_with(const std::vector<ActivePair>& active, const Points& x, Eigen::VectorXd& g) const {
     Points sheet(x.size(), Vec3::Zero());
     sheet_gradient(sheet_, x, sheet);
     g = flat(sheet);
@@ -178,7 +180,7 @@ void ClothProblem::gradient(const Points& x, Eigen::VectorXd& g) {
     add_gradient(elastics, x, g);
     for (int i = 0; i < points(); ++i) g[3 * i + 1] += node_mass_[i] * gravity;
     if (friction.coefficient > 0) add_gradient(friction, x, g);
-    contact_.add_gradient(active_, g);
+    contact_.add_gradient(active, g);
     for (int i = 0; i < points(); ++i)
         if (pinned_[i]) g.segment<3>(3 * i).setZero();
 }
@@ -217,6 +219,15 @@ void ClothProblem::multiply(const Eigen::VectorXd& v, Eigen::VectorXd& product) 
     sheet_beyond_compact(sheet_, v, product);
     for (int i = 0; i < points(); ++i)
         if (pinned_[i]) product.segment<3>(3 * i) = v.segment<3>(3 * i);
+}
+
+void ClothProblem::curvature_along(const Points& x, const Eigen::VectorXd& g, const Eigen::VectorXd& d,
+                                   Eigen::VectorXd& hd) {
+    constexpr double part = 1e-3; // of steps of millimetres: what touches moves by micrometres
+    Points near = x;
+    flat(near) += part * d;
+    gradient_with(contact_.active(near), near, hd);
+    hd = (hd - g) / part;
 }
 
 double ClothProblem::feasible_step(const Points& x, const Eigen::VectorXd& dx, std::vector<double>* shares) {

@@ -58,6 +58,8 @@ public:
     void gradient(const Points& x, Eigen::VectorXd& g) override;
     BlockMatrix& hessian(const Points& x, bool exact, bool& pattern_changed) override;
     void multiply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const override;
+    void curvature_along(const Points& x, const Eigen::VectorXd& g, const Eigen::VectorXd& d,
+                         Eigen::VectorXd& hd) override;
     double feasible_step(const Points& x, const Eigen::VectorXd& dx, std::vector<double>* shares = nullptr) override;
     double residual(const Points& x, const Eigen::VectorXd& g) override;
     const Eigen::VectorXd& mass() const override { return mass_; }
@@ -65,6 +67,7 @@ public:
 
 private:
     void make_pattern();
+    void gradient_with(const std::vector<ActivePair>& active, const Points& x, Eigen::VectorXd& g) const;
     void renew_friction(const Points& x);
     void weaken_friction(const Points& x);
     void take_up_friction(const Points& x);

@@ -47,20 +47,6 @@ int BlockMatrix::find(int i, int j) const {
 
 void BlockMatrix::set_zero() { std::fill(value_.begin(), value_.end(), 0.0); }
 
-void BlockMatrix::add_off_diagonal(int j, int slot, const Mat3& a) {
-    for (int c = 0; c < 3; ++c) {
-        double* column = column_data(j, slot, c);
-        for (int r = 0; r < 3; ++r) column[r] += a(r, c);
-    }
-}
-
-void BlockMatrix::add_diagonal(int i, const Mat3& a) {
-    for (int c = 0; c < 3; ++c) {
-        double* column = column_data(i, column_[i], c);
-        for (int r = c; r < 3; ++r) column[r] += a(r, c);
-    }
-}
-
 void BlockMatrix::add_to_diagonal(const Eigen::VectorXd& d) {
     for (int k = 0; k < rows(); ++k) value_[scalar_column_[k]] += d[k];
 }

@@ -26,9 +26,19 @@ public:
     void set_zero();
 
     /// Adds `a` to block (i, j), i > j, at `slot` = find(i, j).
-    void add_off_diagonal(int j, int slot, const Mat3& a);
+    void add_off_diagonal(int j, int slot, const Mat3& a) {
+        for (int c = 0; c < 3; ++c) {
+            double* column = column_data(j, slot, c);
+            for (int r = 0; r < 3; ++r) column[r] += a(r, c);
+        }
+    }
     /// Adds a symmetric block on the diagonal.
-    void add_diagonal(int i, const Mat3& a);
+    void add_diagonal(int i, const Mat3& a) {
+        for (int c = 0; c < 3; ++c) {
+            double* column = column_data(i, column_[i], c);
+            for (int r = c; r < 3; ++r) column[r] += a(r, c);
+        }
+    }
     void add_to_diagonal(const Eigen::VectorXd& d); ///< one entry per scalar row
 
     /// Rows and columns of pinned points become those of the identity: they stay where they are.

@@ -18,7 +18,8 @@ constexpr double slack_per_step = 3;      // and for this many steps of the pres
 constexpr double most_slack = 0.005;      // m, whose lists would grow too long
 constexpr int query_chunk = 64;
 
-double slack_for(double step) { return std::max(step, std::min(slack_per_step * step, most_slack)); }
+// A little more than the step, or rounding would take its end for out of reach.
+double slack_for(double step) { return std::max(1.01 * step, std::min(slack_per_step * step, most_slack)); }
 
 Box ball_box(const Vec3& p, double r) { return Box(p.array() - r, p.array() + r); }
 

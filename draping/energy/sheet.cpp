@@ -9,8 +9,6 @@ namespace toile {
 
 namespace {
 
-constexpr int chunk = 64;
-
 // The nodes an element couples: those of its patch and, where a border gives the patch fewer, of its compact
 // bending.
 struct ElementNodes {
@@ -33,34 +31,45 @@ Eigen::SparseMatrix<double> compact_matrix(const Bending& bending) {
     return k;
 }
 
+/// Triangles that follow each other lie near each other: they are added together, or the matrix would be read and
+/// written all over for every single one.
+constexpr int cluster = 32;
+
+int cluster_end(const Sheet& sheet, int c) { return std::min((c + 1) * cluster, int(sheet.stretch.size())); }
+
 void colour(Sheet& sheet) {
-    const int n = int(sheet.stretch.size());
+    const int clusters = (int(sheet.stretch.size()) + cluster - 1) / cluster;
     std::vector<std::vector<char>> taken; // taken[colour][node]
-    std::vector<int> colour_of(n);
-    for (int t = 0; t < n; ++t) {
-        const ElementNodes e = element_nodes(sheet, t);
-        const auto free = [&](const std::vector<char>& used) {
-            return std::none_of(e.node.begin(), e.node.begin() + e.count, [&](int i) { return used[i]; });
+    std::vector<int> colour_of(clusters);
+    for (int k = 0; k < clusters; ++k) {
+        const auto all_nodes = [&](auto&& holds) {
+            for (int t = k * cluster; t < cluster_end(sheet, k); ++t) {
+                const ElementNodes e = element_nodes(sheet, t);
+                for (int i = 0; i < e.count; ++i)
+                    if (!holds(e.node[i])) return false;
+            }
+            return true;
         };
         std::size_t c = 0;
-        while (c < taken.size() && !free(taken[c])) ++c;
+        while (c < taken.size() && !all_nodes([&](int i) { return !taken[c][i]; })) ++c;
         if (c == taken.size()) taken.emplace_back(sheet.bending.stiffness.rows(), 0);
-        for (int k = 0; k < e.count; ++k) taken[c][e.node[k]] = 1;
-        colour_of[t] = int(c);
+        all_nodes([&](int i) { return taken[c][i] = 1; });
+        colour_of[k] = int(c);
     }
     sheet.colours.assign(taken.size() + 1, 0);
     for (int c : colour_of) ++sheet.colours[c + 1];
     for (std::size_t c = 0; c < taken.size(); ++c) sheet.colours[c + 1] += sheet.colours[c];
-    sheet.order.resize(n);
+    sheet.clusters.resize(clusters);
     std::vector<int> next(sheet.colours.begin(), sheet.colours.end() - 1);
-    for (int t = 0; t < n; ++t) sheet.order[next[colour_of[t]]++] = t;
+    for (int k = 0; k < clusters; ++k) sheet.clusters[next[colour_of[k]]++] = k;
 }
 
 template <class F> void for_elements(const Sheet& sheet, F&& f) {
     for (std::size_t c = 0; c + 1 < sheet.colours.size(); ++c) {
         const int first = sheet.colours[c];
-        parallel_for(sheet.colours[c + 1] - first, chunk, [&](int begin, int end) {
-            for (int k = begin; k < end; ++k) f(sheet.order[first + k]);
+        parallel_for(sheet.colours[c + 1] - first, 1, [&](int begin, int end) {
+            for (int k = first + begin; k < first + end; ++k)
+                for (int t = sheet.clusters[k] * cluster; t < cluster_end(sheet, sheet.clusters[k]); ++t) f(t);
         });
     }
 }
@@ -80,6 +89,12 @@ Sheet make_sheet(const Garment& garment, const std::vector<Fabric>& fabrics) {
             const auto end = patch.nodes.begin() + patch.count;
             if (patch.count < Patch::max_nodes && std::find(patch.nodes.begin(), end, bend.nodes[k]) == end)
                 patch.nodes[patch.count++] = bend.nodes[k];
+        }
+        auto& place = sheet.bend_place.emplace_back();
+        for (int a = 0; a < Patch::max_nodes; ++a) {
+            const auto end = bend.nodes.begin() + bend.count;
+            const auto at = std::find(bend.nodes.begin(), end, patch.nodes[a]);
+            place[a] = a < patch.count && at != end ? int(at - bend.nodes.begin()) : -1;
         }
     }
     sheet.beyond_compact = sheet.bending.stiffness - compact_matrix(sheet.bending);
@@ -119,39 +134,33 @@ void sheet_slots(Sheet& sheet, const BlockMatrix& matrix) {
         for (int t = begin; t < end; ++t) {
             const ElementNodes e = element_nodes(sheet, t);
             for (int a = 0; a < e.count; ++a)
-                for (int b = 0; b < e.count; ++b)
+                for (int b = 0; b < a; ++b)
                     sheet.slots[t][a * Patch::max_nodes + b] =
-                        e.node[a] > e.node[b] ? matrix.find(e.node[a], e.node[b]) : -1;
+                        matrix.find(std::max(e.node[a], e.node[b]), std::min(e.node[a], e.node[b]));
         }
     });
 }
 
 void sheet_hessian(const Sheet& sheet, const Points& x, HessianKind kind, BlockMatrix& matrix) {
     for_elements(sheet, [&](int t) {
-        const ElementNodes e = element_nodes(sheet, t);
-        StretchHessian h;
-        stretch_hessian(sheet.stretch[t], x, kind, h);
-        h *= sheet.softness;
-        Eigen::Matrix<double, Patch::max_nodes, Patch::max_nodes> scalar;
-        scalar.setZero();
+        const StretchCurvature stretch = stretch_curvature(sheet.stretch[t], x, kind);
+        const auto& node = sheet.stretch[t].patch.nodes;
         const BendElement& bend = sheet.bending.compact[t];
-        std::array<int, BendElement::max_nodes> place{};
-        for (int k = 0; k < bend.count; ++k)
-            place[k] = int(std::find(e.node.begin(), e.node.begin() + e.count, bend.nodes[k]) - e.node.begin());
-        for (int i = 0; i < bend.count; ++i)
-            for (int j = 0; j < bend.count; ++j) scalar(place[i], place[j]) += bend.stiffness(i, j);
+        const auto& place = sheet.bend_place[t];
         Eigen::Matrix<double, 9, 9> limit;
         const bool limited = !sheet.limits.empty() && strain_limit_hessian(sheet.limits[t], x, kind, limit);
-        for (int a = 0; a < e.count; ++a)
-            for (int b = 0; b < e.count; ++b) {
-                if (e.node[a] < e.node[b]) continue;
-                Mat3 block = h.block<3, 3>(3 * a, 3 * b);
-                block.diagonal().array() += scalar(a, b);
-                if (limited && a < 3 && b < 3) block += limit.block<3, 3>(3 * a, 3 * b);
+        for (int a = 0; a < stretch.count; ++a)
+            for (int b = 0; b <= a; ++b) {
+                Mat3 block = sheet.softness * stretch.block(a, b);
+                if (place[a] >= 0 && place[b] >= 0)
+                    block.diagonal().array() += bend.stiffness(place[a], place[b]);
+                if (limited && a < 3) block += limit.block<3, 3>(3 * a, 3 * b);
                 if (a == b)
-                    matrix.add_diagonal(e.node[a], block);
+                    matrix.add_diagonal(node[a], block);
+                else if (node[a] > node[b])
+                    matrix.add_off_diagonal(node[b], sheet.slots[t][a * Patch::max_nodes + b], block);
                 else
-                    matrix.add_off_diagonal(e.node[b], sheet.slots[t][a * Patch::max_nodes + b], block);
+                    matrix.add_off_diagonal(node[a], sheet.slots[t][a * Patch::max_nodes + b], block.transpose());
             }
     });
 }

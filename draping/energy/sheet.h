@@ -17,11 +17,12 @@ struct Sheet {
     std::vector<StrainLimit> limits;            ///< empty: none
     double softness = 1; ///< factor on the membrane; below 1 on the way to a drape, whose steps it lengthens
 
-    /// Elements by colour: those of one colour share no node, so that they can be added at once and the sum at
-    /// every block has one order whatever the number of threads.
-    std::vector<int> order;
-    std::vector<int> colours;  ///< colour c holds order[colours[c] .. colours[c + 1])
-    std::vector<std::array<int, Patch::max_nodes * Patch::max_nodes>> slots; ///< of blocks (a, b) in the matrix
+    /// Clusters of triangles by colour: those of one colour share no node, so that they can be added at once and
+    /// the sum at every block has one order whatever the number of threads.
+    std::vector<int> clusters;
+    std::vector<int> colours; ///< colour c holds clusters[colours[c] .. colours[c + 1])
+    std::vector<std::array<int, Patch::max_nodes>> bend_place; ///< of a patch node in the compact bending, or -1
+    std::vector<std::array<int, Patch::max_nodes * Patch::max_nodes>> slots; ///< of blocks a > b in the matrix
 };
 
 /// `fabrics` has one entry per panel. Strain limits are made but act only when `limits` is not cleared.

@@ -172,58 +172,58 @@ void stretch_gradient(const StretchElement& element, const Points& x,
     }
 }
 
-void stretch_hessian(const StretchElement& element, const Points& x, HessianKind kind,
-                     StretchHessian& hessian) {
+StretchCurvature stretch_curvature(const StretchElement& element, const Points& x, HessianKind kind) {
     const Shape shape = shape_of(element, x);
     const StretchResponse response = stretch_response(element, shape.strain);
-    const int m = element.patch.count;
     const bool project = kind == HessianKind::projected;
     const auto forces = [&](const Vec3& stress) {
         return Vec3(element.area * element.to_strain.transpose() * stress);
     };
+    StretchCurvature h;
+    h.patch = &element.patch;
+    h.count = element.patch.count;
+    const auto& curve = element.patch.curve;
 
-    // What multiplies the identity: chords by corner, arcs by their curve rows.
-    const Vec3 chord = forces(project ? tensile(response.stress) : response.stress);
+    // What multiplies the identity: arcs by their curve rows, chords by corner.
     const Vec3 force = forces(response.stress);
     Vec3 arc = force.cwiseProduct(Vec3(shape.arc_slope[0], shape.arc_slope[1], shape.arc_slope[2])) / 12;
     if (project) arc = arc.cwiseMax(0);
-    Mat3 corner = Mat3::Zero();
+    for (int a = 0; a < h.count; ++a)
+        for (int b = 0; b <= a; ++b)
+            h.identity(a, b) = arc[0] * curve(0, a) * curve(0, b) + arc[1] * curve(1, a) * curve(1, b) +
+                               arc[2] * curve(2, a) * curve(2, b);
+    const Vec3 chord = project ? forces(tensile(response.stress)) : force;
     for (int k = 0; k < 3; ++k) {
         const int a = edge_start(k), b = edge_end(k);
-        corner(a, a) += chord[k];
-        corner(b, b) += chord[k];
-        corner(a, b) -= chord[k];
-        corner(b, a) -= chord[k];
+        h.identity(a, a) += chord[k];
+        h.identity(b, b) += chord[k];
+        h.identity(std::max(a, b), std::min(a, b)) -= chord[k];
     }
 
     // Derivatives of the three lengths by node, and with them the products tangent x derivative; the bending of
     // what arcs add is one more term in the turning of each edge.
     const Mat3 tangent = element.area * element.to_strain.transpose() * response.tangent * element.to_strain;
-    std::array<Mat3, Patch::max_nodes> length, pull; // column k: edge k
-    Vec3 bend;
+    h.turning = shape.turning;
     for (int k = 0; k < 3; ++k) {
-        bend[k] = force[k] * shape.arc_bend[k] / 144;
-        if (project) bend[k] = std::max(bend[k], 0.0);
+        h.bend[k] = force[k] * shape.arc_bend[k] / 144;
+        if (project) h.bend[k] = std::max(h.bend[k], 0.0);
     }
-    const bool bends = bend != Vec3::Zero();
-    for (int a = 0; a < m; ++a) {
-        for (int k = 0; k < 3; ++k) length[a].col(k) = length_gradient(element, shape, k, a);
-        pull[a] = length[a] * tangent;
+    for (int a = 0; a < h.count; ++a) {
+        for (int k = 0; k < 3; ++k) h.length[a].col(k) = length_gradient(element, shape, k, a);
+        h.pull[a] = h.length[a] * tangent;
     }
-    hessian.resize(3 * m, 3 * m);
-    const auto& curve = element.patch.curve;
-    for (int a = 0; a < m; ++a)
+    return h;
+}
+
+void stretch_hessian(const StretchElement& element, const Points& x, HessianKind kind,
+                     StretchHessian& hessian) {
+    const StretchCurvature curvature = stretch_curvature(element, x, kind);
+    hessian.resize(3 * curvature.count, 3 * curvature.count);
+    for (int a = 0; a < curvature.count; ++a)
         for (int b = 0; b <= a; ++b) {
-            Mat3 block = pull[a] * length[b].transpose();
-            double identity = 0;
-            for (int k = 0; k < 3; ++k) identity += arc[k] * curve(k, a) * curve(k, b);
-            if (a < 3) identity += corner(a, b);
-            block.diagonal().array() += identity;
-            if (bends)
-                for (int k = 0; k < 3; ++k)
-                    block += bend[k] * curve(k, a) * curve(k, b) * shape.turning[k] * shape.turning[k].transpose();
+            const Mat3 block = curvature.block(a, b);
             hessian.block<3, 3>(3 * a, 3 * b) = block;
-            if (b < a) hessian.block<3, 3>(3 * b, 3 * a) = block.transpose();
+            hessian.block<3, 3>(3 * b, 3 * a) = block.transpose();
         }
 }
 

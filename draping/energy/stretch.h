@@ -56,8 +56,38 @@ double stretch_value(const StretchElement& element, const Points& x);
 /// Gradient of one element by node of its patch.
 void stretch_gradient(const StretchElement& element, const Points& x,
                       std::array<Vec3, Patch::max_nodes>& gradient);
+
+/// The second derivative of one element, block by block as they are asked for.
+struct StretchCurvature {
+    int count = 0; ///< nodes of the patch
+    std::array<Mat3, Patch::max_nodes> length, pull; ///< column k: of edge k; the sum of pull_k length_k^T
+    Eigen::Matrix<double, Patch::max_nodes, Patch::max_nodes> identity; ///< lower half: what multiplies I3
+    std::array<Vec3, 3> turning; ///< of edge k
+    Vec3 bend;                   ///< what multiplies turning_k turning_k^T curve(k, a) curve(k, b)
+    const Patch* patch = nullptr;
+
+    /// Block of patch nodes a >= b.
+    Mat3 block(int a, int b) const {
+        const Mat3 &p = pull[a], &l = length[b];
+        Mat3 m;
+        for (int c = 0; c < 3; ++c)
+            for (int r = 0; r < 3; ++r) m(r, c) = p(r, 0) * l(c, 0) + p(r, 1) * l(c, 1) + p(r, 2) * l(c, 2);
+        for (int r = 0; r < 3; ++r) m(r, r) += identity(a, b);
+        for (int k = 0; k < 3; ++k) {
+            if (bend[k] == 0) continue;
+            const double factor = bend[k] * patch->curve(k, a) * patch->curve(k, b);
+            const Vec3& t = turning[k];
+            for (int c = 0; c < 3; ++c)
+                for (int r = 0; r < 3; ++r) m(r, c) += factor * t[r] * t[c];
+        }
+        return m;
+    }
+};
+
 /// Exact, or positive semidefinite: the tangent part as it is, compressive stresses left out of the geometric
-/// part.
+/// part. The result refers to the element.
+StretchCurvature stretch_curvature(const StretchElement& element, const Points& x, HessianKind kind);
+/// The same as one matrix.
 void stretch_hessian(const StretchElement& element, const Points& x, HessianKind kind,
                      StretchHessian& hessian);
 

@@ -25,6 +25,11 @@ struct Problem {
     /// matrix leaves out for the sake of a cheap factor.
     virtual void multiply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const = 0;
 
+    /// How the gradient, `g` at x, changes per step along d: the exact second derivative's product with d, whatever
+    /// matrix was asked for last.
+    virtual void curvature_along(const Points& x, const Eigen::VectorXd& g, const Eigen::VectorXd& d,
+                                 Eigen::VectorXd& hd) = 0;
+
     /// Largest t in [0, 1] for which x .. x + t dx stays feasible. `shares`, when given, receives the same for each
     /// point as far as it is itself in the way, 1 for most: a hint, since points that go different shares of
     /// their ways may meet others.

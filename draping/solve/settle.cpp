@@ -2,6 +2,8 @@
 #include "draping/solve/settle.h"
 
 #include <algorithm>
+#include <Eigen/LU>
+
 #include <cmath>
 
 namespace toile {
@@ -19,6 +21,7 @@ constexpr double first_radius = 2; // steps of the projected matrix, which is to
 constexpr int old_factor_cg = 25;  // CG iterations after which the factor is renewed
 constexpr double worth_parting = 0.9; // share of a step below which every point goes as far as it can by itself
 constexpr double sufficient = 1e-4;   // of the decrease that the slope promises
+constexpr double static_time_step = 100; // s: from there on steps are Newton's
 constexpr double tail_time_step = 1; // s: before that the state is still travelling, however small the forces
 
 double longest(const VectorXd& dx) {
@@ -110,6 +113,39 @@ struct Run {
         return 0;
     }
 
+    /// The projected matrix is several times too stiff for slow, long waves, and successive steps go the same way:
+    /// takes the best step of the plane of dx and of the last motion, by the true second derivative along both, when
+    /// it is feasible and better than dx, or half of the way to it (Narkiss and Zibulevsky, Sequential subspace
+    /// optimization, 2005).
+    void lengthen(const Points& x, const VectorXd& g, const VectorXd& last, VectorXd& dx) {
+        if (!(problem.feasible_step(x, dx) == 1)) return;
+        VectorXd hd, hp;
+        problem.curvature_along(x, g, dx, hd);
+        problem.curvature_along(x, g, last, hp);
+        Mat2 h;
+        h << dx.dot(hd), dx.dot(hp), dx.dot(hp), last.dot(hp);
+        const Vec2 slope(g.dot(dx), g.dot(last));
+        if (!(h(0, 0) > 0 && h.determinant() > 1e-3 * h(0, 0) * h(1, 1))) return;
+        const Vec2 best = -h.inverse() * slope;
+        if (best[0] < 1) return;
+        const auto value_of = [&](const VectorXd& d) {
+            Points trial = x;
+            move(trial, d, 1);
+            return problem.value(trial);
+        };
+        const VectorXd further = (best[0] - 1) * dx + best[1] * last;
+        double least = value_of(dx);
+        VectorXd plain = dx;
+        for (const double share : {1.0, 0.5, 0.25}) {
+            VectorXd d = plain + share * further;
+            if (longest(d) > options.max_step || problem.feasible_step(x, d) < 1) continue;
+            const double value = value_of(d);
+            if (value >= least) continue;
+            dx = std::move(d);
+            return;
+        }
+    }
+
     /// Minimises g.d + d.H d / 2 within |d| <= radius, in the norm of the kept factor. Returns whether the
     /// boundary was reached; `iterations` receives the CG iterations taken.
     bool trust_region_direction(const VectorXd& g, double radius, double tolerance, VectorXd& d,
@@ -154,7 +190,7 @@ struct Run {
 SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleOptions& options) {
     Run run{problem, factor, options, {}, false, false};
     SettleResult& result = run.result;
-    VectorXd g, dx, hdx, shift;
+    VectorXd g, dx, hdx, shift, last;
     double h = options.time_step;
     double radius = 0; // of the trust region, 0 while not in the tail
     int failures = 0;
@@ -225,6 +261,7 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
 
         const double reach = longest(dx);
         if (reach > options.max_step) dx *= options.max_step / reach;
+        if (!tail && h > static_time_step && reach < options.max_step && last.size() == dx.size()) run.lengthen(x, g, last, dx);
         double t = problem.feasible_step(x, dx, &shares);
         if (t < worth_parting)
             if (const double own = run.part(x, g, shares, t, dx); own > 0) t = own;
@@ -243,6 +280,7 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
             actual = result.energy - value;
             const double noise = 1e-13 * (1 + std::abs(result.energy));
             if (actual >= sufficient * -t * slope || (predicted < noise && actual > -noise)) {
+                last = t * dx;
                 x = std::move(trial);
                 accepted = true;
                 break;

@@ -21,24 +21,27 @@ namespace {
 constexpr double most_off = 0.03; // m
 constexpr double crest = 3e-3;    // m, of a shoulder: the middle of its uppermost part is the ridge
 
-bool is_collar(const std::string& label) { return label.find("collar") != std::string::npos; }
+bool is_collar(const std::string& label) {
+    return label.find("collar") != std::string::npos;
+}
 
 /// Whether an edge of this label is an open border of the sewn garment.
 bool is_open(const Garment& sewn, const std::string& label) {
     std::set<std::array<int, 2>> labelled;
     for (const BorderLine& line : sewn.borders)
         for (std::size_t k = 0; line.label == label && k + 1 < line.vertices.size(); ++k) {
-            const auto [low, high] = std::minmax(sewn.node_of_vertex[line.vertices[k]],
-                                                 sewn.node_of_vertex[line.vertices[k + 1]]);
+            const auto [low, high] =
+                std::minmax(sewn.node_of_vertex[line.vertices[k]], sewn.node_of_vertex[line.vertices[k + 1]]);
             labelled.insert({low, high});
         }
     for (int e = 0; e < sewn.edges.size(); ++e)
-        if (sewn.edges.triangles_at(e) == 1 && !sewn.seam_edge[e] && labelled.count(sewn.edges.ends[e])) return true;
+        if (sewn.edges.triangles_at(e) == 1 && !sewn.seam_edge[e] && labelled.count(sewn.edges.ends[e]))
+            return true;
     return false;
 }
 
-/// The highest vertex of the label's edges on a panel, and the highest of the other side of the axis if the edges
-/// reach as far to it.
+/// The highest vertex of the label's edges on a panel, and the highest of the other side of the axis if the
+/// edges reach as far to it.
 std::vector<int> tops(const StagedLevel& staged, const std::string& label, int panel, double axis) {
     const Garment& g = staged.garment;
     const auto at = [&](int v) { return staged.placed[g.node_of_vertex[v]]; };
@@ -63,7 +66,8 @@ std::map<std::string, std::vector<int>> collar_nodes(const Garment& sewn) {
         for (int v : line.vertices)
             if (is_collar(line.label)) nodes[line.label].insert(sewn.node_of_vertex[v]);
     std::map<std::string, std::vector<int>> sorted;
-    for (const auto& [label, set] : nodes) sorted[label].assign(set.begin(), set.end());
+    for (const auto& [label, set] : nodes)
+        sorted[label].assign(set.begin(), set.end());
     return sorted;
 }
 
@@ -99,17 +103,22 @@ std::string text(const char* format, auto... values) {
 
 const char* to_string(Belongs belongs) {
     switch (belongs) {
-    case Belongs::file_height: return "file height";
-    case Belongs::neck: return "neck";
-    case Belongs::carried: return "carried";
-    case Belongs::anywhere: return "anywhere";
+    case Belongs::file_height:
+        return "file height";
+    case Belongs::neck:
+        return "neck";
+    case Belongs::carried:
+        return "carried";
+    case Belongs::anywhere:
+        return "anywhere";
     }
     return "anywhere";
 }
 
 std::optional<Vec3> shoulder_ridge(const TriMesh& body, double x, double height) {
     TriMesh lying = body; // its horizontal sections are the upright ones that run from front to back
-    for (Vec3& p : lying.points) std::swap(p.x(), p.y());
+    for (Vec3& p : lying.points)
+        std::swap(p.x(), p.y());
     const auto loops = slice(lying, x); // of points (y, z)
     // The depths at which the section lies between two heights.
     const auto depths = [&](double low, double high) {
@@ -119,7 +128,9 @@ std::optional<Vec3> shoulder_ridge(const TriMesh& body, double x, double height)
                 Vec2 a = loop[k], b = loop[(k + 1) % loop.size()];
                 if (a.x() > b.x()) std::swap(a, b);
                 if (a.x() > high || b.x() < low) continue;
-                const auto at = [&](double y) { return a.x() < b.x() ? Vec2(a + (y - a.x()) / (b.x() - a.x()) * (b - a)) : a; };
+                const auto at = [&](double y) {
+                    return a.x() < b.x() ? Vec2(a + (y - a.x()) / (b.x() - a.x()) * (b - a)) : a;
+                };
                 box.extend(a.x() < low ? at(low) : a);
                 box.extend(b.x() > high ? at(high) : b);
             }
@@ -151,10 +162,12 @@ Neckline find_neckline(const StagedLevel& staged, const Garment& sewn, const Poi
     std::vector<Vec2> seen;
     for (const auto& [label, all] : nodes) {
         neckline.from_body[label] = mean_distance(all, x, body, tree);
-        for (int node : all) seen.emplace_back(x[node].x(), x[node].z());
+        for (int node : all)
+            seen.emplace_back(x[node].x(), x[node].z());
         for (int panel = 0; panel < int(sewn.panel_names.size()); ++panel)
             for (int v : tops(staged, label, panel, neckline.axis.x()))
-                if (const auto place = shoulder_ridge(body, staged.placed[staged.garment.node_of_vertex[v]].x(), neck_y))
+                if (const auto place =
+                        shoulder_ridge(body, staged.placed[staged.garment.node_of_vertex[v]].x(), neck_y))
                     neckline.points.push_back({label, sewn.node_of_vertex[v], *place});
     }
     neckline.round_neck = hull_contains(seen, neckline.axis);
@@ -186,9 +199,11 @@ std::vector<std::string> misplaced(const std::vector<Landmark>& landmarks, const
     std::vector<std::string> sentences;
     for (const Landmark& l : landmarks)
         if (l.off && *l.off > most_off)
-            sentences.push_back(text("the edges labelled \"%s\" lie %.1f cm from ", l.label.c_str(), 100 * *l.off) +
-                                (l.belongs == Belongs::neck ? "their place at the neck" : "their height in the file"));
-    if (neckline.found && !neckline.round_neck) sentences.push_back("the neckline does not go round the neck");
+            sentences.push_back(
+                text("the edges labelled \"%s\" lie %.1f cm from ", l.label.c_str(), 100 * *l.off) +
+                (l.belongs == Belongs::neck ? "their place at the neck" : "their height in the file"));
+    if (neckline.found && !neckline.round_neck)
+        sentences.push_back("the neckline does not go round the neck");
     return sentences;
 }
 

@@ -23,7 +23,9 @@ const TriMesh& form() {
     return body;
 }
 
-double neck_y(const TriMesh& body) { return measure_body(body).neck_y; }
+double neck_y(const TriMesh& body) {
+    return measure_body(body).neck_y;
+}
 
 Vec3 nearest_point_of(const TriMesh& body, const Vec3& p) {
     return *std::min_element(body.points.begin(), body.points.end(), [&](const Vec3& a, const Vec3& b) {
@@ -31,7 +33,8 @@ Vec3 nearest_point_of(const TriMesh& body, const Vec3& p) {
     });
 }
 
-/// A tube of two panels whose upper border is a neckline, flat before and behind the form, and as it should lie.
+/// A tube of two panels whose upper border is a neckline, flat before and behind the form, and as it should
+/// lie.
 struct Top {
     StagedLevel staged;
     Garment sewn;
@@ -48,7 +51,8 @@ struct Top {
         return misplaced(find_landmarks(staged, sewn, x, neckline()), neckline());
     }
     void shift(const Vec3& by) {
-        for (int node : ring) x[node] += by;
+        for (int node : ring)
+            x[node] += by;
     }
 };
 
@@ -63,7 +67,8 @@ Top make_top() {
                 line.vertices.push_back((p * (rows + 1) + rows) * (columns + 1) + i);
                 line.at.push_back(2.0 * i / columns - half);
             }
-            for (Garment* g : {&top.staged.garment, &top.sewn}) g->borders.push_back(line);
+            for (Garment* g : {&top.staged.garment, &top.sewn})
+                g->borders.push_back(line);
         }
     const double neck = neck_y(form());
     for (const BorderLine& line : top.sewn.borders)
@@ -90,11 +95,13 @@ Top make_waist(bool at_side_seam) {
     for (int p = 0; p < 2; ++p) {
         BorderLine line{"lower_interface", p, 0, {}, {}};
         for (int k = 0; k <= (at_side_seam ? rows : columns); ++k) {
-            line.vertices.push_back(at_side_seam ? (p * (rows + 1) + k) * (columns + 1) + (p == 0 ? columns : 0)
-                                                 : (p * (rows + 1) + rows) * (columns + 1) + k);
+            line.vertices.push_back(at_side_seam
+                                        ? (p * (rows + 1) + k) * (columns + 1) + (p == 0 ? columns : 0)
+                                        : (p * (rows + 1) + rows) * (columns + 1) + k);
             line.at.push_back(double(k) / (at_side_seam ? rows : columns));
         }
-        for (Garment* g : {&top.staged.garment, &top.sewn}) g->borders.push_back(line);
+        for (Garment* g : {&top.staged.garment, &top.sewn})
+            g->borders.push_back(line);
     }
     return top;
 }
@@ -108,7 +115,8 @@ bool says(const std::vector<std::string>& sentences, const std::string& words) {
 } // namespace
 
 TEST_CASE("the ridge of the shoulder is the highest line beside the neck and falls outward") {
-    for (const FormMeasures& m : {FormMeasures{}, FormMeasures{1.9, 1.1, 0.9, 1.1}, FormMeasures{1.5, 0.8, 0.6, 0.85}}) {
+    for (const FormMeasures& m :
+         {FormMeasures{}, FormMeasures{1.9, 1.1, 0.9, 1.1}, FormMeasures{1.5, 0.8, 0.6, 0.85}}) {
         const TriMesh body = make_form(m);
         const double neck = neck_y(body);
         double above = neck;
@@ -119,7 +127,8 @@ TEST_CASE("the ridge of the shoulder is the highest line beside the neck and fal
             CHECK((*left - Vec3(-right->x(), right->y(), right->z())).norm() < 1e-3);
             double highest = 0, depth = 0; // of the points nearby
             for (const Vec3& p : body.points)
-                if (std::abs(p.x() - x) < 0.005 && p.y() < neck && p.y() > highest) highest = p.y(), depth = p.z();
+                if (std::abs(p.x() - x) < 0.005 && p.y() < neck && p.y() > highest)
+                    highest = p.y(), depth = p.z();
             CHECK(left->y() == Approx(highest).margin(0.008));
             CHECK(left->z() == Approx(depth).margin(0.02));
             CHECK(left->y() < above);
@@ -158,7 +167,8 @@ TEST_CASE("a neckline that stands off the body between its neck points is off by
     Top top = make_top();
     const Points before = top.x;
     top.shift(Vec3(0, 0.1, 0.2));
-    for (const NeckPoint& p : top.neckline().points) top.x[p.node] = before[p.node];
+    for (const NeckPoint& p : top.neckline().points)
+        top.x[p.node] = before[p.node];
     const Landmark l = top.landmark("left_collar");
     CHECK(*l.off == top.neckline().from_body.at("left_collar"));
     CHECK(*l.off > 0.05);
@@ -175,7 +185,8 @@ TEST_CASE("a neckline beside the neck does not go round it") {
 TEST_CASE("one label may have the neck points of both sides") {
     Top top = make_top();
     for (Garment* g : {&top.staged.garment, &top.sewn})
-        for (BorderLine& line : g->borders) line.label = "collar";
+        for (BorderLine& line : g->borders)
+            line.label = "collar";
     CHECK(top.neckline().points.size() == 4);
     CHECK(*top.landmark("collar").off < 1e-3);
 }
@@ -185,12 +196,14 @@ TEST_CASE("an open edge that carries its garment belongs at the file's height, a
     CHECK(skirt.landmark("lower_interface").belongs == Belongs::file_height);
     CHECK(*skirt.landmark("lower_interface").off == Approx(0).margin(1e-12));
     CHECK(skirt.sentences().empty());
-    for (Vec3& p : skirt.x) p.y() -= 0.05;
+    for (Vec3& p : skirt.x)
+        p.y() -= 0.05;
     CHECK(*skirt.landmark("lower_interface").off == Approx(0.05));
     CHECK(says(skirt.sentences(), "\"lower_interface\" lie 5.0 cm from their height in the file"));
 
     Top dress = make_waist(true);
-    for (Vec3& p : dress.x) p.y() -= 0.05;
+    for (Vec3& p : dress.x)
+        p.y() -= 0.05;
     CHECK(dress.landmark("lower_interface").belongs == Belongs::carried);
     CHECK_FALSE(dress.landmark("lower_interface").off);
     CHECK(dress.sentences().empty());
@@ -198,11 +211,13 @@ TEST_CASE("an open edge that carries its garment belongs at the file's height, a
 
 TEST_CASE("what cannot be judged is not") {
     Top top = make_top();
-    for (Garment* g : {&top.staged.garment, &top.sewn}) g->borders[0].label = "left_armhole";
+    for (Garment* g : {&top.staged.garment, &top.sewn})
+        g->borders[0].label = "left_armhole";
     CHECK(top.landmark("left_armhole").belongs == Belongs::anywhere);
     CHECK_FALSE(top.landmark("left_armhole").off);
     const Neckline none = find_neckline(top.staged, top.sewn, top.x, test::sphere(0.2, 3));
     CHECK_FALSE(none.found);
-    for (const Landmark& l : find_landmarks(top.staged, top.sewn, top.x, none)) CHECK_FALSE(l.off);
+    for (const Landmark& l : find_landmarks(top.staged, top.sewn, top.x, none))
+        CHECK_FALSE(l.off);
     CHECK(misplaced(find_landmarks(top.staged, top.sewn, top.x, none), none).empty());
 }

@@ -665,11 +665,11 @@ void prove(Run& run) {
 }
 
 void note_landmarks(Run& run) {
-    const std::vector<std::string> labels = labels_of(run.garment);
-    const StagedLevel& staged = run.staging.levels[run.level];
-    const std::map<std::string, double> placed = label_heights(staged.garment, staged.placed, labels);
-    for (const auto& [label, height] : label_heights(run.garment, run.x, labels))
-        run.result.landmarks.push_back({label, placed.at(label), height});
+    const Neckline neckline = find_neckline(run.staging.levels[run.level], run.garment, run.x, run.body);
+    run.result.landmarks = find_landmarks(run.staging.levels[run.level], run.garment, run.x, neckline);
+    if (run.open || run.stopped) return;
+    const std::vector<std::string> all = misplaced(run.result.landmarks, neckline);
+    run.result.warnings.insert(run.result.warnings.end(), all.begin(), all.end());
 }
 
 /// The report's sentences on what was modelled.

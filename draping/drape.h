@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "draping/landmarks.h"
 #include "draping/measure.h"
 #include "draping/staging.h"
 #include "draping/state.h"
@@ -46,13 +47,6 @@ struct LevelReport {
 struct StageSeconds {
     std::string stage;
     double seconds = 0;
-};
-
-/// Where the edges of one label came to lie.
-struct Landmark {
-    std::string label;
-    double placed = 0;  ///< m, mean height where the pattern's file puts them
-    double settled = 0; ///< m, at the end
 };
 
 struct BarrierReport {

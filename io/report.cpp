@@ -58,7 +58,11 @@ Json levels(const DrapeResult& r) {
 Json landmarks(const DrapeResult& r) {
     Json out = Json::array();
     for (const Landmark& l : r.landmarks)
-        out.push_back({{"label", l.label}, {"placed", l.placed}, {"settled", l.settled}});
+        out.push_back({{"label", l.label},
+                       {"placed", l.placed},
+                       {"settled", l.settled},
+                       {"belongs", to_string(l.belongs)},
+                       {"off", l.off ? Json(*l.off) : Json(nullptr)}});
     return out;
 }
 

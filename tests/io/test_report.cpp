@@ -31,6 +31,7 @@ DrapeResult result_of(const test::Skirt& skirt) {
     r.levels = {{0.02, 100, 20, 5, 0.5}, {0.01, 400, 12, 3, 0.7}};
     r.seconds = {{"sew", 0.5}, {"settle", 0.3}, {"settle", 0.4}};
     r.decisions = {"no contact of cloth with cloth: no two parts come within 3 mm"};
+    r.landmarks = {{"left_collar", 1.39, 1.48, Belongs::neck, 0.02}, {"left_armhole", 1.33, 1.41}};
     r.warnings = {"second"};
     return r;
 }
@@ -75,6 +76,10 @@ TEST_CASE("a report is valid by the published schema and says what was measured"
     CHECK(r["seconds"]["total"] == 1.5);
     CHECK(r["warnings"] == nlohmann::json{"first", "second"});
     CHECK(r["decisions"].size() == 2);
+    CHECK(r["landmarks"][0]["belongs"] == "neck");
+    CHECK(r["landmarks"][0]["off"] == 0.02);
+    CHECK(r["landmarks"][1]["belongs"] == "anywhere");
+    CHECK(r["landmarks"][1]["off"].is_null());
     CHECK(r["pieces"] == 1);
     CHECK(r["peak_memory_bytes"].get<double>() > 1e6);
 }
@@ -110,6 +115,14 @@ TEST_CASE("the schema refuses a report that lacks, adds or mistypes anything") {
     CHECK(complaints(bad) != "");
     bad = good;
     bad["strain"]["warp"].erase("limit");
+    CHECK(complaints(bad) != "");
+    for (const char* key : {"belongs", "off"}) {
+        bad = good;
+        bad["landmarks"][0].erase(key);
+        CHECK(complaints(bad) != "");
+    }
+    bad = good;
+    bad["landmarks"][0]["belongs"] = "waist";
     CHECK(complaints(bad) != "");
 }
 

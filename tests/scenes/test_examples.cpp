@@ -61,6 +61,8 @@ TEST_CASE("the examples drape on the form and keep every promise") {
         INFO(drape.result.where);
         CHECK(drape.result.status == DrapeStatus::converged);
         CHECK(drape.result.residual <= 1e-3);
+        for (const Landmark& l : drape.result.landmarks)
+            if (l.belongs == Belongs::neck) CHECK(l.off.value() < 0.03);
         for (const std::string& file : job.garments) {
             const ReadGarment g = read_garment(file);
             check_sound(g, drape.body, PanelFabrics(g.garment.panel_names.size(), fabric_preset(fabric_of(name))));

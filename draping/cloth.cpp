@@ -231,8 +231,7 @@ void ClothProblem::curvature_along(const Points& x, const Eigen::VectorXd& g, co
 }
 
 double ClothProblem::feasible_step(const Points& x, const Eigen::VectorXd& dx, std::vector<double>* shares) {
-    contact_.prepare(x, dx);
-    active_ = contact_.active(x);
+    if (contact_.prepare(x, dx)) active_ = contact_.active(x);
     return contact_.feasible_step(x, dx, nullptr, shares ? &blocking_ : nullptr, shares);
 }
 

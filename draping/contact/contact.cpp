@@ -16,10 +16,19 @@ constexpr double keep_of_gap = 0.2;       // a step leaves at least this share o
 constexpr double least_slack = 0.0015;    // m; a list serves at least for motions of this size
 constexpr double slack_per_step = 3;      // and for this many steps of the present size, but for long ones,
 constexpr double most_slack = 0.005;      // m, whose lists would grow too long
+constexpr double most_moved = 0.5;        // share of the nodes; if more have moved, everything is looked for anew
 constexpr int query_chunk = 64;
 
 // A little more than the step, or rounding would take its end for out of reach.
 double slack_for(double step) { return std::max(1.01 * step, std::min(slack_per_step * step, most_slack)); }
+
+/// Whether the plane of the triangle, or the two parallel planes through the edges, show that a pair is farther apart
+/// than `reach`.
+bool planes_apart(const std::array<Vec3, 4>& x, bool edge_edge, double reach) {
+    const Vec3 normal = edge_edge ? (x[1] - x[0]).cross(x[3] - x[2]) : (x[2] - x[1]).cross(x[3] - x[1]);
+    const double height = normal.dot(edge_edge ? x[2] - x[0] : x[1] - x[0]);
+    return height * height > 1.000001 * reach * reach * normal.squaredNorm();
+}
 
 Box ball_box(const Vec3& p, double r) { return Box(p.array() - r, p.array() + r); }
 
@@ -81,6 +90,9 @@ Contact::Contact(ContactCloth cloth, const TriMesh& body, const ContactOptions& 
     }
     body_slack_.assign(body_.size(), 0.0);
     make_body_trees();
+    triangle_of_node_.assign(nodes_, -1);
+    for (std::size_t t = 0; t < cloth_.triangles.size(); ++t)
+        for (const int i : cloth_.triangles[t]) triangle_of_node_[i] = int(t);
 
     int groups = 0;
     for (int g : cloth_.group) groups = std::max(groups, g + 1);
@@ -115,6 +127,7 @@ void Contact::set_options(const ContactOptions& options) {
 
 void Contact::make_body_trees() {
     body_built_at_ = body_;
+    body_moved_ = false;
     std::vector<Box> points(body_.size());
     for (std::size_t v = 0; v < body_.size(); ++v) points[v] = ball_box(body_[v], body_slack_[v]);
     const auto triangles = simplex_boxes(body_, body_triangles_, body_slack_);
@@ -131,7 +144,10 @@ void Contact::make_body_trees() {
     update(body_edge_tree_, edges);
 }
 
-void Contact::set_body(const Points& body) { body_ = body; }
+void Contact::set_body(const Points& body) {
+    body_ = body;
+    body_moved_ = true;
+}
 
 std::array<Vec3, 4> Contact::corners(const Points& x, const ContactPair& p) const {
     return {at(x, p.p[0]), at(x, p.p[1]), at(x, p.p[2]), at(x, p.p[3])};
@@ -157,7 +173,8 @@ bool Contact::near_in_cloth(const ContactPair& p) const {
 std::vector<double> Contact::moved_since_built(const Points& x) const {
     std::vector<double> d(nodes_ + body_.size(), 0.0);
     for (int i = 0; i < nodes_; ++i) d[i] = (x[i] - built_at_[i]).norm();
-    for (std::size_t v = 0; v < body_.size(); ++v) d[nodes_ + v] = (body_[v] - body_built_at_[v]).norm();
+    if (body_moved_)
+        for (std::size_t v = 0; v < body_.size(); ++v) d[nodes_ + v] = (body_[v] - body_built_at_[v]).norm();
     return d;
 }
 
@@ -166,46 +183,73 @@ double Contact::moved(const std::vector<double>& d, const ContactPair& p) const 
     return d[p.p[0]] + std::max({d[p.p[1]], d[p.p[2]], d[p.p[3]]});
 }
 
-void Contact::prepare(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx) {
-    bool serves = built_;
-    for (int i = 0; serves && i < nodes_; ++i) {
-        const Vec3 now = x[i] - built_at_[i];
-        serves = now.norm() <= slack_[i] && (now + dx.segment<3>(3 * i)).norm() <= slack_[i];
-    }
-    for (std::size_t v = 0; serves && v < body_.size(); ++v) {
-        const Vec3 now = body_[v] - body_built_at_[v];
-        serves = now.norm() <= body_slack_[v] &&
-                 (!body_dx || (now + (*body_dx)[v]).norm() <= body_slack_[v]);
-    }
-    if (serves) return;
-
-    slack_.resize(nodes_);
-    for (int i = 0; i < nodes_; ++i)
-        slack_[i] = std::max(least_slack, slack_for(dx.segment<3>(3 * i).norm()));
-    bool body_moves = false;
+bool Contact::body_serves(const Points* body_dx) const {
+    if (!body_moved_ && !body_dx) return true;
     for (std::size_t v = 0; v < body_.size(); ++v) {
-        body_slack_[v] = body_dx ? slack_for((*body_dx)[v].norm()) : 0;
-        body_moves = body_moves || body_slack_[v] > 0 || body_[v] != body_built_at_[v];
+        const Vec3 now = body_[v] - body_built_at_[v];
+        if (now.norm() > body_slack_[v] || (body_dx && (now + (*body_dx)[v]).norm() > body_slack_[v])) return false;
     }
-    if (body_moves) make_body_trees();
-    rebuild(x);
+    return true;
 }
 
-void Contact::rebuild(const Points& x) {
-    built_ = true;
-    built_at_ = x;
+bool Contact::prepare(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx) {
+    // Pairs of nodes that stay within their slack serve on; those of the others are looked for anew.
+    std::vector<char> moved(nodes_, 1);
+    int count = nodes_;
+    const bool body_serves = this->body_serves(body_dx);
+    if (built_ && body_serves) {
+        count = 0;
+        for (int i = 0; i < nodes_; ++i) {
+            const Vec3 now = x[i] - built_at_[i];
+            moved[i] = now.norm() > slack_[i] || (now + dx.segment<3>(3 * i)).norm() > slack_[i];
+            count += moved[i];
+        }
+        if (count == 0) return false;
+    }
+    if (count > most_moved * nodes_) {
+        std::fill(moved.begin(), moved.end(), 1);
+        built_ = false;
+    }
+    slack_.resize(nodes_);
+    built_at_.resize(nodes_);
+    for (int i = 0; i < nodes_; ++i) {
+        if (!moved[i]) continue;
+        slack_[i] = std::max(least_slack, slack_for(dx.segment<3>(3 * i).norm()));
+        built_at_[i] = x[i];
+    }
+    if (!body_serves) {
+        for (std::size_t v = 0; v < body_.size(); ++v) body_slack_[v] = body_dx ? slack_for((*body_dx)[v].norm()) : 0;
+        make_body_trees();
+    }
+    find_pairs(moved);
+    return built_ = true;
+}
+
+/// Finds the pairs that have a node that has moved, in place of those that the list has of them.
+void Contact::find_pairs(const std::vector<char>& moved_node) {
+    const Points& x = built_at_;
     const int triangles = int(cloth_.triangles.size()), edges = int(cloth_.edges.size());
     const double reach_body = options_.body.distance, reach_cloth = options_.cloth.distance;
 
     const auto triangle_boxes = simplex_boxes(x, cloth_.triangles, slack_);
     const auto edge_boxes = simplex_boxes(x, cloth_.edges, slack_);
-    if (options_.self) {
+    if (options_.self && built_) {
+        cloth_triangle_tree_.refit(triangle_boxes);
+        cloth_edge_tree_.refit(edge_boxes);
+    } else if (options_.self) {
         cloth_triangle_tree_ = Bvh(triangle_boxes);
         cloth_edge_tree_ = Bvh(edge_boxes);
     }
 
     std::vector<double> slack = slack_;
     slack.insert(slack.end(), body_slack_.begin(), body_slack_.end());
+    const auto has_moved = [&](const auto& simplex) {
+        return std::any_of(simplex.begin(), simplex.end(), [&](int i) { return i < nodes_ && moved_node[i]; });
+    };
+    if (built_)
+        std::erase_if(pairs_, [&](const ContactPair& p) { return has_moved(p.p); });
+    else
+        pairs_.clear();
 
     // Each query keeps what it finds; queries are put together in their order, whatever thread ran them.
     const auto collect = [&](int queries, auto&& find) {
@@ -216,9 +260,12 @@ void Contact::rebuild(const Points& x) {
                 for (int q = c * query_chunk; q < std::min(queries, (c + 1) * query_chunk); ++q)
                     find(q, [&](ContactPair p) {
                         const Barrier& b = p.with_body ? options_.body : options_.cloth;
+                        const auto corner = corners(x, p);
+                        const double reach = b.distance + moved(slack, p);
+                        if (planes_apart(corner, p.edge_edge, reach)) return;
                         p.distance = b.distance;
-                        p.built = pair_geometry(corners(x, p), p.edge_edge).d;
-                        if (p.built > b.distance + moved(slack, p)) return;
+                        p.built = pair_geometry(corner, p.edge_edge).d;
+                        if (p.built > reach) return;
                         if (!p.with_body && near_in_cloth(p))
                             for (int k : p.p) p.distance = std::min(p.distance, 0.5 * cloth_.node_reach[k]);
                         found[c].push_back(p);
@@ -236,29 +283,39 @@ void Contact::rebuild(const Points& x) {
                 if (cloth_.group[i] == cloth_.group[j] || sewn_to(i, j)) return true;
         return false;
     };
+    const auto keep_own = [&](int i, const Triangle& k, auto&& keep) {
+        if (!shares_group({i}, {k[0], k[1], k[2]}))
+            keep({{i, k[0], k[1], k[2]}, false, false, 0, cloth_.node_area[i], 0, 0});
+    };
 
-    pairs_.clear();
     collect(nodes_, [&](int i, auto&& keep) {
+        if (!moved_node[i]) return;
         const Box box = ball_box(x[i], slack_[i]);
         body_triangle_tree_.overlapping(grown(box, reach_body), [&](int t) {
             const Triangle& k = body_triangles_[t];
             keep({{i, nodes_ + k[0], nodes_ + k[1], nodes_ + k[2]}, false, true, 0, cloth_.node_area[i], 0, 0});
         });
         if (options_.self)
-            cloth_triangle_tree_.overlapping(grown(box, reach_cloth), [&](int t) {
-                const Triangle& k = cloth_.triangles[t];
-                if (!shares_group({i}, {k[0], k[1], k[2]}))
-                    keep({{i, k[0], k[1], k[2]}, false, false, 0, cloth_.node_area[i], 0, 0});
-            });
+            cloth_triangle_tree_.overlapping(grown(box, reach_cloth),
+                                             [&](int t) { keep_own(i, cloth_.triangles[t], keep); });
     });
     collect(triangles, [&](int t, auto&& keep) {
         const Triangle& k = cloth_.triangles[t];
+        if (!has_moved(k)) return;
         body_point_tree_.overlapping(grown(triangle_boxes[t], reach_body), [&](int v) {
             keep({{nodes_ + v, k[0], k[1], k[2]}, false, true, 0, body_area_[v], 0, 0});
+        });
+        if (!options_.self) return;
+        const Box box = grown(triangle_boxes[t], reach_cloth);
+        cloth_triangle_tree_.overlapping(box, [&](int u) { // nodes that have not moved themselves
+            for (const int i : cloth_.triangles[u])
+                if (!moved_node[i] && triangle_of_node_[i] == u && box.intersects(ball_box(x[i], slack_[i])))
+                    keep_own(i, k, keep);
         });
     });
     collect(edges, [&](int e, auto&& keep) {
         const auto& a = cloth_.edges[e];
+        if (!has_moved(a)) return;
         const double length2 = cloth_.edge_length[e] * cloth_.edge_length[e];
         body_edge_tree_.overlapping(grown(edge_boxes[e], reach_body), [&](int f) {
             const auto& b = body_edges_[f];
@@ -268,12 +325,13 @@ void Contact::rebuild(const Points& x) {
         });
         if (options_.self)
             cloth_edge_tree_.overlapping(grown(edge_boxes[e], reach_cloth), [&](int f) {
-                if (f <= e) return;
                 const auto& b = cloth_.edges[f];
+                if (f == e || (f < e && has_moved(b))) return; // found by the other
                 if (shares_group({a[0], a[1]}, {b[0], b[1]})) return;
                 const double fade = length2 * cloth_.edge_length[f] * cloth_.edge_length[f];
                 const double weight = std::min(cloth_.edge_area[e], cloth_.edge_area[f]);
-                keep({{a[0], a[1], b[0], b[1]}, true, false, 0, weight, fade, 0});
+                const auto [low, high] = std::minmax(a, b);
+                keep({{low[0], low[1], high[0], high[1]}, true, false, 0, weight, fade, 0});
             });
     });
 }

@@ -66,8 +66,8 @@ public:
     const Points& body() const { return body_; }
 
     /// Makes sure that every pair that the step from x by dx (and of the body by body_dx) can bring into reach is
-    /// on the list. Does nothing while the current list still serves.
-    void prepare(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx = nullptr);
+    /// on the list. Does nothing and returns false while the current list still serves.
+    bool prepare(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx = nullptr);
 
     /// The pairs of the list whose barrier acts at x.
     std::vector<ActivePair> active(const Points& x) const;
@@ -104,9 +104,10 @@ private:
     Vec3 at(const Points& x, int i) const { return i < nodes_ ? x[i] : body_[i - nodes_]; }
     std::array<Vec3, 4> corners(const Points& x, const ContactPair& p) const;
     Barrier barrier(const ContactPair& p) const;
-    void rebuild(const Points& x);
+    void find_pairs(const std::vector<char>& moved);
     double moved(const std::vector<double>& distance, const ContactPair& p) const;
     std::vector<double> moved_since_built(const Points& x) const;
+    bool body_serves(const Points* body_dx) const;
     bool near_in_cloth(const ContactPair& p) const;
     void make_body_trees();
 
@@ -124,8 +125,10 @@ private:
 
     bool built_ = false;
     std::vector<ContactPair> pairs_;
-    Points built_at_;
-    std::vector<double> slack_;      ///< how far each node may move from built_at_ while the list serves
+    std::vector<int> triangle_of_node_; ///< one of each node's
+    bool body_moved_ = false;        ///< since body_built_at_
+    Points built_at_;                ///< where each node was when its pairs were looked for
+    std::vector<double> slack_;      ///< how far each node may move from there while the list serves
     std::vector<double> body_slack_; ///< the same for body points
     Points body_built_at_;
 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/solve/settle.h"
 
-#include <algorithm>
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
 
 namespace toile {
@@ -115,10 +115,9 @@ struct Run {
 
     /// The projected matrix is several times too stiff for slow, long waves, and successive steps go the same way:
     /// takes the best step of the plane of dx and of the last motion, by the true second derivative along both, when
-    /// it is feasible and better than dx, or half of the way to it (Narkiss and Zibulevsky, Sequential subspace
-    /// optimization, 2005).
+    /// it is feasible and better than dx, or a part of the way to it (Narkiss and Zibulevsky, Sequential subspace
+    /// optimization, 2005). All of dx is feasible.
     void lengthen(const Points& x, const VectorXd& g, const VectorXd& last, VectorXd& dx) {
-        if (!(problem.feasible_step(x, dx) == 1)) return;
         VectorXd hd, hp;
         problem.curvature_along(x, g, dx, hd);
         problem.curvature_along(x, g, last, hp);
@@ -134,13 +133,10 @@ struct Run {
             return problem.value(trial);
         };
         const VectorXd further = (best[0] - 1) * dx + best[1] * last;
-        double least = value_of(dx);
-        VectorXd plain = dx;
+        const double plain = value_of(dx);
         for (const double share : {1.0, 0.5, 0.25}) {
-            VectorXd d = plain + share * further;
-            if (longest(d) > options.max_step || problem.feasible_step(x, d) < 1) continue;
-            const double value = value_of(d);
-            if (value >= least) continue;
+            VectorXd d = dx + share * further;
+            if (longest(d) > options.max_step || problem.feasible_step(x, d) < 1 || value_of(d) >= plain) continue;
             dx = std::move(d);
             return;
         }
@@ -261,10 +257,12 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
 
         const double reach = longest(dx);
         if (reach > options.max_step) dx *= options.max_step / reach;
-        if (!tail && h > static_time_step && reach < options.max_step && last.size() == dx.size()) run.lengthen(x, g, last, dx);
         double t = problem.feasible_step(x, dx, &shares);
-        if (t < worth_parting)
+        if (t < worth_parting) {
             if (const double own = run.part(x, g, shares, t, dx); own > 0) t = own;
+        } else if (t == 1 && !tail && h > static_time_step && reach < options.max_step && last.size() == dx.size()) {
+            run.lengthen(x, g, last, dx);
+        }
         const double feasible = t;
         const double slope = g.dot(dx);
         problem.multiply(dx, hdx);

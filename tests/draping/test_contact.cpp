@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/contact/contact.h"
 #include "draping/contact/friction.h"
+#include "tests/support/random.h"
 #include "tests/support/small_contact.h"
+#include "tests/support/surfaces.h"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <numeric>
+#include <set>
 
 using namespace toile;
 using test::tetrahedron;
@@ -86,6 +90,50 @@ TEST_CASE("contact: nodes that a seam will merge do not repel each other") {
     Contact contact(cloth, tetrahedron(), o);
     contact.prepare(x, Eigen::VectorXd::Zero(18));
     CHECK(contact.active(x).empty());
+}
+
+TEST_CASE("contact: a list that is kept up finds the pairs of a new one") {
+    test::Random random(5);
+    TriMesh upper = test::grid(12, 12, 0.01), body = test::grid(9, 9, 0.014, -0.0015);
+    const TriMesh lower = test::grid(12, 12, 0.01, 0.0012);
+    const int half = int(upper.points.size());
+    for (const Triangle& t : lower.triangles) upper.triangles.push_back({t[0] + half, t[1] + half, t[2] + half});
+    Points x = upper.points;
+    x.insert(x.end(), lower.points.begin(), lower.points.end());
+    ContactCloth cloth;
+    cloth.triangles = upper.triangles;
+    cloth.edges = make_edges(cloth.triangles, int(x.size())).ends;
+    cloth.node_area.assign(x.size(), 1e-4);
+    cloth.node_reach.assign(x.size(), 0.007);
+    cloth.edge_length.assign(cloth.edges.size(), 0.01);
+    cloth.edge_area.assign(cloth.edges.size(), 1e-4);
+    cloth.group.resize(x.size());
+    std::iota(cloth.group.begin(), cloth.group.end(), 0);
+
+    const auto touching = [](const Contact& contact, const Points& at) {
+        std::set<std::array<int, 6>> pairs;
+        for (const ActivePair& a : contact.active(at)) {
+            const ContactPair& p = contact.pair(a.pair);
+            pairs.insert({p.p[0], p.p[1], p.p[2], p.p[3], p.edge_edge, p.with_body});
+        }
+        CHECK(pairs.size() == contact.active(at).size()); // none twice
+        return pairs;
+    };
+    Contact kept(cloth, body, options());
+    for (int step = 0; step < 40; ++step) {
+        Eigen::VectorXd dx = Eigen::VectorXd::Zero(3 * x.size());
+        const int centre = random.below(int(x.size()));
+        const double reach = step % 10 == 9 ? 1 : 0.03; // now and then all move
+        for (std::size_t i = 0; i < x.size(); ++i)
+            if ((x[i] - x[centre]).norm() < reach) dx.segment<3>(3 * i) = random.vec3(0.001);
+        kept.prepare(x, dx);
+        flat(x) += dx;
+        Contact fresh(cloth, body, options());
+        fresh.prepare(x, Eigen::VectorXd::Zero(dx.size()));
+        const auto expected = touching(fresh, x);
+        CHECK(expected.size() > 100);
+        CHECK(touching(kept, x) == expected);
+    }
 }
 
 TEST_CASE("friction: limit and stick") {

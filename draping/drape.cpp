@@ -8,6 +8,7 @@
 #include "draping/place.h"
 #include "draping/solve/settle.h"
 #include "draping/where.h"
+#include "geometry/memory.h"
 
 #include <algorithm>
 #include <chrono>
@@ -42,6 +43,9 @@ constexpr double coarse_residual = 10;    // to which levels that are not the la
 constexpr int most_iterations = 1000;      // of the last pass of a level
 constexpr double forced_share = 0.05;    // of the edge length: a gap below which a seam may be joined by force
 constexpr double inner_stitch_stiffness = 1e5; // N/m, of stitches to the inside of an edge once seams are closed
+constexpr double near = 0.9;             // of the memory limit; the rest is for what is taken between two looks
+constexpr double growth = 1.2;           // power of the vertices with which memory grows; factors outgrow meshes
+constexpr double least_bytes = 5e3;      // times that power: what a level takes, before more was seen
 constexpr double tight = 2e-3;           // m by which a section must be too short to count as too small
 
 double total(const std::vector<double>& v) {
@@ -81,6 +85,8 @@ struct Run {
     DrapeResult result = {};
 
     Clock::time_point started = Clock::now();
+    MemoryUse memory_before = memory_use();
+    double used_before = 0, per_power = least_bytes; ///< see fits_memory()
     double density = 0;
     bool stopped = false;      ///< by the caller or by time
     std::string stopped_by = {};
@@ -109,15 +115,40 @@ struct Run {
         share_end = std::min(1.0, share_begin + share);
     }
 
-    void stop(const char* by) {
+    void stop(const std::string& by) {
         stopped = true;
-        if (stopped_by.empty()) stopped_by = text("stopped by %s after %.3g s at the stage ", by, seconds()) + stage;
+        if (stopped_by.empty())
+            stopped_by = text("stopped by %s after %.3g s at the stage ", by.c_str(), seconds()) + stage;
+    }
+
+    /// What is in use, or was for a moment since the drape began.
+    double memory() const {
+        const MemoryUse use = memory_use();
+        return use.peak > memory_before.peak ? use.peak : use.now;
+    }
+
+    /// Stops the run when level `next` would not fit. What it adds is estimated from what `last`, the level before it,
+    /// has added.
+    bool fits_memory(int next, int last = -1) {
+        const auto power = [&](int l) {
+            return l < 0 ? 0.0 : std::pow(double(staging.levels[l].garment.uv.size()), growth);
+        };
+        const double used = memory();
+        if (last > 0) per_power = std::max(per_power, (used - used_before) / (power(last) - power(last - 1)));
+        used_before = used;
+        const double needed = used + per_power * (power(next) - power(last));
+        if (needed > options.max_memory)
+            stop(text("the memory limit of %.0f MB, before level %d would have taken about %.0f MB,",
+                      options.max_memory / 1e6, next + 1, needed / 1e6));
+        return !stopped;
     }
 
     bool tell(double within, double residual) {
         done = std::max(done, share_begin + (share_end - share_begin) * std::clamp(within, 0.0, 1.0));
         const double so_far = seconds();
         if (so_far > options.max_seconds) stop("the time limit");
+        if (const double used = memory(); used > near * options.max_memory)
+            stop(text("the memory limit of %.0f MB, with %.0f MB in use,", options.max_memory / 1e6, used / 1e6));
         if (options.progress) {
             DrapeProgress p;
             p.stage = stage;
@@ -419,6 +450,11 @@ void sew_coarsest(Run& run) {
     const StagedLevel& staged = run.staging.levels[0];
     run.result.levels.push_back({staged.edge_length, int(staged.garment.uv.size()), 0, 0, 0});
     run.begin("sew", 0.15);
+    if (!run.fits_memory(0)) {
+        run.open = true;
+        close_what_is_closed(run, staged.garment, staged.placed);
+        return;
+    }
     std::vector<int> map;
     run.garment = close_seams(staged.garment, &map);
     Sewn sewn;
@@ -698,7 +734,7 @@ bool start_again(Run& run) {
     run.x = run.options.from;
     run.facts.restarted = true;
     run.result.levels.push_back({run.edge_length(), int(closed.uv.size()), 0, 0, 0});
-    settle_level(run);
+    if (run.fits_memory(run.level)) settle_level(run);
     return true;
 }
 
@@ -707,7 +743,7 @@ void sew_and_drape(Run& run) {
     sew_coarsest(run);
     if (run.open) return;
     settle_level(run);
-    while (!run.last_level() && !run.stopped) {
+    while (!run.last_level() && !run.stopped && run.fits_memory(run.level + 1, run.level)) {
         ++run.level;
         refine(run);
         settle_level(run);
@@ -730,6 +766,7 @@ const char* to_string(DrapeStatus s) {
 DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabrics& fabrics,
                   const DrapeOptions& options) {
     Run run{.staging = staging, .body = avatar.body, .fabrics = fabrics, .options = options};
+    run.result.residual = std::numeric_limits<double>::infinity();
     run.result.tolerance = options.tolerance;
     run.result.friction = options.friction;
     run.iterations_left = options.max_iterations;
@@ -740,8 +777,9 @@ DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabri
     if (!start_again(run)) sew_and_drape(run);
     if (run.stopped) {
         run.result.status = DrapeStatus::limit;
-        run.result.where = run.stopped_by +
-                           text(", level %d of %d, at a residual of %.3g", run.level + 1, run.levels(), run.result.residual);
+        run.result.where = run.stopped_by + text(", level %d of %d", run.level + 1, run.levels());
+        if (std::isfinite(run.result.residual))
+            run.result.where += text(", at a residual of %.3g", run.result.residual);
     }
     note_landmarks(run);
     if (!run.open) {

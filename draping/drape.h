@@ -30,6 +30,7 @@ struct DrapeOptions {
     double gravity = 9.81;          ///< m/s2, along -y
     int max_iterations = 2000;      ///< Newton iterations on all levels together
     double max_seconds = 1e9;       ///< wall time after which the state reached is returned with status limit
+    double max_memory = 1e18;       ///< bytes of the process; the same happens when they or the next level come near
     std::vector<std::string> hold;  ///< edges whose hooks stay on to the end: words of labels_called()
     Points from;                    ///< when not empty: node positions of the closed garment to start from
     /// Called often (at least every two seconds); returns false to stop with the state reached.
@@ -63,7 +64,7 @@ struct DrapeResult {
     std::string where; ///< what blocked, slid or was too small, and its place on the garment; empty when converged
     /// Largest over nodes of the distance between the non-contact force and what contact can answer, over
     /// max(node's weight, a tenth of the mean node's weight).
-    double residual = 0;
+    double residual = 0; ///< infinity when nothing was settled
     double tolerance = 0;
     double friction = 0;
     BarrierReport barrier;

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/report.h"
 
+#include "geometry/memory.h"
 #include "io/hash.h"
 #include "io/write_garment.h"
 
 #include <nlohmann/json.hpp>
-
-#include <sys/resource.h>
 
 #include <algorithm>
 #include <cmath>
@@ -135,7 +134,7 @@ nlohmann::ordered_json make_report(const DrapeResult& r, const TriMesh& body, co
         {"pieces", count_pieces(r.garment)},
         {"levels", levels(r)},
         {"seconds", seconds(r, context)},
-        {"peak_memory_bytes", peak_memory_bytes()},
+        {"peak_memory_bytes", std::uint64_t(memory_use().peak)},
         {"threads", context.threads},
         {"blas", context.blas},
         {"version", TOILE_VERSION},
@@ -156,12 +155,6 @@ std::string report_json(const DrapeResult& result, const TriMesh& body, const Pa
                         const ReportContext& context) {
     const Json report = make_report(result, body, fabrics, context);
     return report.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
-}
-
-std::uint64_t peak_memory_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return std::uint64_t(usage.ru_maxrss) * 1024;
 }
 
 } // namespace toile

@@ -37,7 +37,4 @@ nlohmann::ordered_json make_report(const DrapeResult& result, const TriMesh& bod
 std::string report_json(const DrapeResult& result, const TriMesh& body, const PanelFabrics& fabrics,
                         const ReportContext& context);
 
-/// Most memory this process has had, bytes.
-std::uint64_t peak_memory_bytes();
-
 } // namespace toile

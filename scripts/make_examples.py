@@ -17,6 +17,7 @@ import pathlib
 # The built-in form of 1.68 m, bust 90, waist 72, hip 96. Heights are above the floor; x is to one side.
 BODY = {
     "bust": 90, "waist": 72, "hip": 96,
+    "waist_ease": 1,                           # of skirts and trousers, which then rest 3 cm lower
     "bust_y": 121.5, "waist_y": 106.2, "hip_y": 83.2, "crotch_y": 74.1, "armpit_y": 123.3,
     "neck_x": 8.0, "neck_y": 143.0,            # where the neck meets the shoulder
     "shoulder_x": 18.5, "shoulder_y": 137.9,   # tip of the shoulder
@@ -300,7 +301,7 @@ def sew_skirt(garment, front, back):
 
 def skirt(b):
     garment = Garment()
-    waist, hip = b["waist"] + 1, b["hip"] + 4
+    waist, hip = b["waist"] + b["waist_ease"], b["hip"] + 4
     depth = b["waist_y"] - b["hip_y"]
     front = skirt_half(waist / 4 + 0.5, 8.5, 2.2, 9.5, hip / 4 + 0.25, depth, 58, 7, 1.2, None)
     back = skirt_half(waist / 4 - 0.5, 7.5, 3.6, 13.5, hip / 4 - 0.25, depth, 58, 7, 1.2, front.edge_length("left_hip"))
@@ -355,7 +356,7 @@ def trouser_half(waist, dart, dart_at, dart_length, hip, fork, hem, waist_y, hip
 def trousers(b):
     garment = Garment()
     hem_y = 7.0
-    waist, hip = b["waist"] + 1, b["hip"] + 5
+    waist, hip = b["waist"] + b["waist_ease"], b["hip"] + 5
     levels = (b["waist_y"] - hem_y, b["hip_y"] - hem_y, b["crotch_y"] - 1.5 - hem_y)
     front = trouser_half(waist / 4 + 0.5, 2.0, 8.5, 9.0, hip / 4 - 0.5, 0.055 * hip, 21, *levels, 0.0, 0.8, None)
     back = trouser_half(waist / 4 - 0.5, 3.6, 8.0, 12.5, hip / 4 + 0.5, 0.10 * hip, 23, *levels, 2.5, 3.6,

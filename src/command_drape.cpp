@@ -138,8 +138,10 @@ void add_drape(CLI::App& app, Command& chosen) {
         ->expected(1)
         ->take_all()
         ->type_name("LABEL");
-    add_duration(command, "time-limit", job.drape.max_seconds, 0.001, 1e9,
+    add_duration(command, "max-seconds", job.drape.max_seconds, 0.001, 1e9,
                  "Time after which the state reached is written");
+    add_size(command, "max-memory", job.drape.max_memory, 1e6, 1e15,
+             "Memory before which the state reached is written");
     command.add_flag("--with-avatar", job.with_avatar, "Write the body into the garment files too");
     add_unit_and_up(command, job.write);
     command

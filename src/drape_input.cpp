@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "src/drape_input.h"
 
+#include "geometry/memory.h"
 #include "io/companion.h"
 #include "io/read_pattern.h"
 #include "io/read_staged.h"
 #include "patterns/curve.h"
+#include "src/quantity.h"
 
 #include <cmath>
 #include <filesystem>
@@ -14,7 +16,9 @@ namespace {
 
 constexpr double max_triangles = 2e6;
 
-void refuse_too_fine(const Pattern& pattern, double edge_length) {
+constexpr double bytes_per_triangle = 400; // for all levels while they are made; 310 were seen
+
+void refuse_too_fine(const Pattern& pattern, double edge_length, double max_memory) {
     double area = 0;
     for (const Panel& panel : pattern.panels)
         area += std::abs(signed_area(panel.outline));
@@ -23,6 +27,11 @@ void refuse_too_fine(const Pattern& pattern, double edge_length) {
         throw InputError("at this edge length the pattern has about " +
                          std::to_string(long(triangles / 1e6)) + " million triangles, more than the " +
                          std::to_string(long(max_triangles / 1e6)) + " million that are draped");
+    const double needed = memory_use().now + bytes_per_triangle * triangles;
+    if (needed > max_memory)
+        throw InputError("at this edge length the pattern has about " + std::to_string(long(triangles)) +
+                         " triangles, whose meshes alone take about " + show_size(needed) +
+                         " of memory, more than --max-memory allows");
 }
 
 /// The panel's own fabric, else the one asked for, else the pattern's, else poplin.
@@ -96,8 +105,8 @@ Pattern sound_pattern(const std::string& path, std::vector<std::string>& warning
     throw InputError(path + ": " + errors[0] + more);
 }
 
-DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length) {
-    refuse_too_fine(pattern, edge_length);
+DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length, double max_memory) {
+    refuse_too_fine(pattern, edge_length, max_memory);
     TriangulateOptions options;
     options.edge_length = edge_length;
     options.levels = levels_for(edge_length);

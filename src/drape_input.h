@@ -26,8 +26,9 @@ bool is_staged(const std::string& path);
 /// A pattern that check() finds no error in. Its warnings are added. Throws InputError with the first error.
 Pattern sound_pattern(const std::string& path, std::vector<std::string>& warnings);
 
-/// The pattern meshed at `edge_length` metres. Throws InputError when that is too fine.
-DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length);
+/// The pattern meshed at `edge_length` metres. Throws InputError when that is too fine, or the meshes alone would
+/// take the process beyond `max_memory` bytes.
+DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length, double max_memory = 1e18);
 
 /// A staged mesh and its companion, which may say fabrics, layers, pins and elastics; the edges of its panels are
 /// the loops of their border. Throws InputError.

@@ -167,13 +167,15 @@ DrapeOutcome run_job(const DrapeJob& job) {
     const Avatar avatar{body.mesh, smoothed_toward_core(body.mesh, 0.01)};
     watch.lap(context, "read");
 
-    const DrapeInput input = is_staged(job.pattern) ? read_staged_input(job.pattern, job.fabric, body.mesh)
-                                                    : input_of(pattern, job.fabric, job.edge_length);
+    const DrapeInput input = is_staged(job.pattern)
+                                 ? read_staged_input(job.pattern, job.fabric, body.mesh)
+                                 : input_of(pattern, job.fabric, job.edge_length, job.drape.max_memory);
     context.decisions.insert(context.decisions.end(), input.notes.begin(), input.notes.end());
     refuse_unknown_labels(job, input.staging);
     watch.lap(context, is_staged(job.pattern) ? "read" : "triangulate");
 
     DrapeOptions options = job.drape;
+    options.max_seconds -= watch.total();
     options.from = earlier_positions(job.from, input.staging, context.decisions);
     outcome.result = drape(input.staging, avatar, input.fabrics, options);
     if (job.interrupted && job.interrupted())

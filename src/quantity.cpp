@@ -5,10 +5,10 @@
 
 #include <CLI/CLI.hpp>
 
-#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 namespace toile {
 
@@ -22,7 +22,7 @@ struct Unit {
 struct Quantity {
     const char* what;
     const char* examples;
-    std::array<Unit, 3> units;
+    std::vector<Unit> units;
     std::string (*show)(double);
 };
 
@@ -33,13 +33,21 @@ std::string show_duration(double seconds) {
 }
 
 const Quantity length_of_something{
-    "a length", "10mm, 1cm or 0.01m", {{{"mm", 1, 1000}, {"cm", 1, 100}, {"m", 1, 1}}}, show_length};
+    "a length", "10mm, 1cm or 0.01m", {{"mm", 1, 1000}, {"cm", 1, 100}, {"m", 1, 1}}, show_length};
 const Quantity duration{
-    "a duration", "90s, 5min or 1h", {{{"s", 1, 1}, {"min", 60, 1}, {"h", 3600, 1}}}, show_duration};
+    "a duration", "90s, 5min or 1h", {{"s", 1, 1}, {"min", 60, 1}, {"h", 3600, 1}}, show_duration};
+const Quantity size_of_memory{
+    "a size",
+    "500MB or 2GiB",
+    {{"MB", 1e6, 1}, {"MiB", 0x1p20, 1}, {"GB", 1e9, 1}, {"GiB", 0x1p30, 1}},
+    show_size};
 
 /// "mm, cm or m", each after `prefix`.
 std::string list(const Quantity& q, const std::string& prefix) {
-    return prefix + q.units[0].name + ", " + prefix + q.units[1].name + " or " + prefix + q.units[2].name;
+    std::string text;
+    for (const Unit& u : q.units)
+        text += (text.empty() ? "" : &u == &q.units.back() ? " or " : ", ") + prefix + u.name;
+    return text;
 }
 
 double parse(const Quantity& q, const std::string& text) {
@@ -75,10 +83,18 @@ double parse_length(const std::string& text) { return parse(length_of_something,
 
 double parse_duration(const std::string& text) { return parse(duration, text); }
 
+double parse_size(const std::string& text) { return parse(size_of_memory, text); }
+
 std::string show_length(double metres) {
     char text[32];
     const bool large = std::abs(metres) >= 1;
     std::snprintf(text, sizeof text, "%.4g %s", large ? metres : 1000 * metres, large ? "m" : "mm");
+    return text;
+}
+
+std::string show_size(double bytes) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g MB", bytes / 1e6);
     return text;
 }
 
@@ -91,6 +107,11 @@ void add_length(CLI::App& command, const std::string& name, double& metres, doub
 void add_duration(CLI::App& command, const std::string& name, double& seconds, double low, double high,
                   const std::string& help) {
     add(duration, command, name, seconds, low, high, help)->type_name("DURATION");
+}
+
+void add_size(CLI::App& command, const std::string& name, double& bytes, double low, double high,
+              const std::string& help) {
+    add(size_of_memory, command, name, bytes, low, high, help)->type_name("SIZE");
 }
 
 } // namespace toile

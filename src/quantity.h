@@ -17,6 +17,9 @@ double parse_length(const std::string& text);
 /// "90s", "5min", "1h" in seconds. Throws CommandLineError when the unit is missing or it is no duration.
 double parse_duration(const std::string& text);
 
+/// "500MB", "500MiB", "2GB", "2GiB" in bytes. Throws CommandLineError when the unit is missing or it is no size.
+double parse_size(const std::string& text);
+
 /// An option that takes a length of [low, high] metres. The help names what it is by default.
 void add_length(CLI::App& command, const std::string& name, double& metres, double low, double high,
                 const std::string& help);
@@ -24,6 +27,13 @@ void add_length(CLI::App& command, const std::string& name, double& metres, doub
 /// An option that takes a duration of [low, high] seconds, and is without limit by default.
 void add_duration(CLI::App& command, const std::string& name, double& seconds, double low, double high,
                   const std::string& help);
+
+/// An option that takes a size of [low, high] bytes, and is without limit by default.
+void add_size(CLI::App& command, const std::string& name, double& bytes, double low, double high,
+              const std::string& help);
+
+/// 5e8 as "500 MB".
+std::string show_size(double bytes);
 
 /// 0.0123 as "12.3 mm", or "1.68 m" from one metre on.
 std::string show_length(double metres);

@@ -169,7 +169,7 @@ TEST_CASE("the lower layer is placed first and the upper one keeps off it") {
     CHECK(upper >= lower + 0.002 - 1e-12);
 }
 
-TEST_CASE("fixed panels stay, others keep off them; a panel that no push clears stays too and is named") {
+TEST_CASE("fixed panels stay, others keep off them, and a panel that no push clears stays too and is named") {
     Cloth c;
     add_front(c, {0, 0, 0.2});
     add_front(c, {0, 0, 0.2});

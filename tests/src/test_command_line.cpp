@@ -30,6 +30,16 @@ TEST_CASE("lengths take units and need them") {
     CHECK(show_length(1.68) == "1.68 m");
 }
 
+TEST_CASE("sizes take units and need them") {
+    CHECK(parse_size("500MB") == 5e8);
+    CHECK(parse_size("1MiB") == 1048576);
+    CHECK(parse_size("1.5GB") == 1.5e9);
+    CHECK(parse_size("2GiB") == 2147483648.0);
+    for (const char* bad : {"", "500", "GB", "5TB", "5 GB", "5gb"})
+        CHECK_THROWS_AS(parse_size(bad), CommandLineError);
+    CHECK(show_size(5e8) == "500 MB");
+}
+
 TEST_CASE("a command line that cannot be used has exit code 1 and one sentence") {
     const std::vector<std::vector<std::string>> lines = {
         {},

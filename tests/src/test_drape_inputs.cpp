@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a drape can be given beside a pattern and a body: staged meshes, pins, elastics, hooks that stay.
+#include "geometry/memory.h"
 #include "io/read_garment.h"
 #include "io/write_file.h"
 #include "tests/src/run.h"
@@ -11,6 +12,7 @@
 
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 
 using namespace toile;
 using namespace toile::test;
@@ -141,7 +143,7 @@ TEST_CASE("check says what a staged mesh is, flat refuses it") {
     CHECK_THAT(flat.err, Contains("staged mesh"));
 }
 
-TEST_CASE("an elastic waist is drawn in and keeps the skirt up; its cloth keeps its limits") {
+TEST_CASE("an elastic waist is drawn in and keeps the skirt up, and its cloth keeps its limits") {
     const TempFolder folder;
     // Cut wide enough to fall off, at every height of the hips.
     nlohmann::json pattern = nlohmann::json::parse(read_file(skirt, 1 << 20));
@@ -272,17 +274,51 @@ TEST_CASE("Ctrl-C writes the state reached and says so") {
     CHECK(read_garment(folder / "a.obj").x.size() == report["nodes"].get<std::size_t>());
 }
 
-TEST_CASE("a time limit ends a drape with the state reached; durations need a unit") {
+TEST_CASE("a time limit ends a drape with the state reached, and durations need a unit") {
     const TempFolder folder;
-    const auto report = drape({skirt, "--edge-length", "20mm", "--time-limit", "0.5s", "-o", folder / "a.obj"}, 3);
+    const auto report = drape({skirt, "--edge-length", "20mm", "--max-seconds", "0.5s", "-o", folder / "a.obj"}, 3);
     CHECK(report["status"] == "limit");
     CHECK_THAT(report["where"].get<std::string>(), Contains("time limit") && Contains("stage"));
     CHECK(read_garment(folder / "a.obj").x.size() == report["nodes"].get<std::size_t>());
     for (const char* wrong : {"5", "soon", "5 parsecs", "-1s", "inf"}) {
-        const Run r = run_toile({"drape", skirt, "--time-limit", wrong, "-o", folder / "b.obj"});
+        const Run r = run_toile({"drape", skirt, "--max-seconds", wrong, "-o", folder / "b.obj"});
         CHECK(r.code == 1);
         CHECK(one_sentence(r.err));
     }
+}
+
+TEST_CASE("a memory limit ends a drape before it is exceeded, and sizes need a unit") {
+    const TempFolder folder;
+    const auto limit = [](double bytes) { return std::to_string(bytes / 1e6) + "MB"; };
+    // Room for the coarse levels: the fine one is not begun, and they are written.
+    const auto coarse = drape({skirt, "--edge-length", "10mm", "--max-memory", limit(memory_use().now + 90e6), "-o",
+                               folder / "a.obj", "-o", folder / "a.glb"},
+                              3);
+    CHECK(coarse["status"] == "limit");
+    CHECK_THAT(coarse["where"].get<std::string>(), Contains("memory limit of") && Contains("level 3 would have taken") &&
+                                                       Contains("level 2 of 3"));
+    CHECK(coarse["seam_gap_max"] == 0.0);
+    CHECK(coarse["intersections"]["cloth_avatar"] == 0);
+    CHECK(read_garment(folder / "a.obj").x.size() == coarse["nodes"].get<std::size_t>());
+    CHECK(read_garment(folder / "a.glb").garment.triangles.size() == coarse["triangles"].get<std::size_t>());
+    // No room at all: the garment as it was placed, seams open.
+    write_text(folder / "stage.obj", staged_skirt());
+    const auto placed = drape({folder / "stage.obj", "--max-memory", "1MB", "-o", folder / "c.obj"}, 3);
+    CHECK_THAT(placed["where"].get<std::string>(), Contains("memory limit of 1 MB") && Contains("level 1 would have taken"));
+    CHECK(placed["seam_gap_max"] > 0.1);
+    CHECK(placed["residual"].is_null());
+    CHECK(read_garment(folder / "c.obj").x.size() == placed["nodes"].get<std::size_t>());
+    // Not even for the flat mesh.
+    const Run fine = run_toile({"drape", skirt, "--edge-length", "2mm", "--max-memory", "20MB", "-o", folder / "b.obj"});
+    CHECK(fine.code == 2);
+    CHECK(one_sentence(fine.err));
+    CHECK_THAT(fine.err, Contains("triangles") && Contains("--max-memory"));
+    for (const char* wrong : {"500", "lots", "500mb", "5kB", "-1GB", "0.5MB", "inf"}) {
+        const Run r = run_toile({"drape", skirt, "--max-memory", wrong, "-o", folder / "b.obj"});
+        CHECK(r.code == 1);
+        CHECK(one_sentence(r.err));
+    }
+    CHECK_FALSE(std::filesystem::exists(folder / "b.obj"));
 }
 
 TEST_CASE("a dress staged by another program is draped as it came") {
@@ -290,7 +326,7 @@ TEST_CASE("a dress staged by another program is draped as it came") {
     if (!stage || !body) return;
     const TempFolder folder;
     // All of it takes minutes; this sees that sewing starts, and that what is written has every vertex.
-    const auto report = drape({*stage, "--avatar", *body, "--repair-avatar", "--time-limit", "5s", "-o",
+    const auto report = drape({*stage, "--avatar", *body, "--repair-avatar", "--max-seconds", "5s", "-o",
                                folder / "a.obj"},
                               3);
     CHECK(report["status"] == "limit");

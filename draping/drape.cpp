@@ -40,8 +40,11 @@ constexpr double slid = 0.10;            // m below its place at which a held ed
 constexpr double coarse_compression = 0.2; // of the fabric's, on levels that are not the last
 constexpr double coarse_residual = 10;    // to which levels that are not the last are settled
 
+constexpr int untangle_every = 20;      // iterations after which cloth that did not come apart is tried again,
+constexpr int most_untangles = 5;       // in each pass
 constexpr int most_iterations = 1000;      // of the last pass of a level
 constexpr double forced_share = 0.05;    // of the edge length: a gap below which a seam may be joined by force
+constexpr double near_share = 0.04;      // and one below which it is, when pulling on closes it slowly
 constexpr double inner_stitch_stiffness = 1e5; // N/m, of stitches to the inside of an edge once seams are closed
 constexpr double near = 0.9;             // of the memory limit; the rest is for what is taken between two looks
 constexpr double growth = 1.2;           // power of the vertices with which memory grows; factors outgrow meshes
@@ -97,6 +100,7 @@ struct Run {
     int level = 0;
 
     Garment garment = {};      ///< of the level at work, closed
+    std::vector<int> joined = {}; ///< its node of every one of the open garment, on the coarsest level
     Points x = {};             ///< its nodes
     bool grown = true;         ///< the body has its full size
     std::vector<std::string> held = {}, carried = {}; ///< labels of hooks that stay, and of those that are let go
@@ -330,6 +334,16 @@ bool grow(Run& run, ClothProblem& problem, Points& x, Cholesky& factor) {
     return grown;
 }
 
+/// Pairs of triangles of a closed garment that cross.
+int crossings(const Garment& closed, const Points& x) {
+    return count_intersections(node_triangles(closed), x, {}, closed.stitches).cloth_cloth;
+}
+
+/// The same of what is sewn, when its seams are joined as they are.
+int crossings_when_joined(const Run& run, const Points& x) {
+    return crossings(run.garment, merge(run.garment, run.joined, x));
+}
+
 /// Pulls the seams of the coarsest level shut around the body; returns the widest gap left, m.
 double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Points& x, Cholesky& factor) {
     SettleOptions o;
@@ -344,6 +358,8 @@ double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Po
         run.settle_some(problem, x, factor, o);
         const double gap = seam_gap_max(open, x);
         if (gap < weld_gap) return gap;
+        // The last tenths of a millimetre may take as long as all the rest, where cloth is sewn to bulky cloth.
+        if (gap < near_share * run.edge_length() && gap > 0.8 * last && crossings_when_joined(run, x) == 0) return gap;
         // A seam that does not pull with all it may is pulled harder.
         for (auto& s : problem.stitches)
             if (s.stiffness * gap < s.cap) s.stiffness = std::min(3 * s.stiffness, 2e4 * s.cap);
@@ -437,11 +453,6 @@ Sewn sew_open(Run& run, const Start& start, bool self) {
     return sewn;
 }
 
-/// Pairs of triangles of a closed garment that cross.
-int crossings(const Garment& closed, const Points& x) {
-    return count_intersections(node_triangles(closed), x, {}, closed.stitches).cloth_cloth;
-}
-
 /// Places and sews the coarsest level: where the file puts the garment, else moved up or down as a whole to where
 /// fewer threads pass through the body. The cloth may pass through itself on the way when it cannot close otherwise;
 /// what counts is that the sewn garment does not cross itself.
@@ -455,23 +466,22 @@ void sew_coarsest(Run& run) {
         close_what_is_closed(run, staged.garment, staged.placed);
         return;
     }
-    std::vector<int> map;
-    run.garment = close_seams(staged.garment, &map);
+    run.garment = close_seams(staged.garment, &run.joined);
     Sewn sewn;
     const auto try_from = [&](const Start& from) {
         for (const bool self : {true, false}) {
             Sewn next = sew_open(run, from, self);
-            next.crossings = crossings(run.garment, merge(run.garment, map, next.x));
+            next.crossings = crossings_when_joined(run, next.x);
             const auto badness = [](const Sewn& s) { return std::tie(s.open, s.crossings, s.gap); };
             if (sewn.x.empty() || badness(next) < badness(sewn)) sewn = std::move(next);
-            if (run.stopped || (sewn.gap < weld_gap && sewn.crossings == 0)) return;
+            if (run.stopped || (!sewn.open && sewn.crossings == 0)) return;
         }
     };
     try_from(place(run, 0));
     if (sewn.open && !run.stopped && run.staging.pins.empty())
         if (const double lift = free_height(staged.garment, staged.placed, run.body); lift != 0)
             try_from(place(run, lift));
-    run.x = merge(run.garment, map, sewn.x);
+    run.x = merge(run.garment, run.joined, sewn.x);
     if (sewn.start.lift != 0)
         run.result.decisions.push_back(
             text("the garment was moved %s by %.0f mm before sewing: where the file puts it threads of seams that "
@@ -532,7 +542,7 @@ void clear_of_body(Run& run, ClothProblem& problem, Cholesky& factor) {
         depth = d;
         for (std::size_t v = 0; v < drawn.points.size(); ++v) drawn.points[v] = run.body.points[v] - d * normals[v];
         problem.contact().set_body(drawn.points);
-        if (problem.contact().violations(run.x) == 0 &&
+        if (problem.contact().violations(run.x).empty() &&
             count_intersections(cloth, run.x, drawn).cloth_avatar == 0)
             break;
     }
@@ -558,6 +568,24 @@ bool take_apart(Run& run, Contact& contact) {
         if (u.after > 0) return false;
         if (contact.widen(run.x) == 0 && find_crossings(tangled, run.x).empty()) return true;
     }
+    return false;
+}
+
+/// Takes the cloth apart, or as much of it as will come; what does not is left out of contact with other cloth, and
+/// false returned.
+bool take_apart_or_leave_out(Run& run, Contact& contact) {
+    contact.leave_out({});
+    if (take_apart(run, contact)) return true;
+    std::vector<char> tangle(run.garment.node_count, 0);
+    const std::vector<Triangle> triangles = node_triangles(run.garment);
+    for (const ClothCrossing& c : find_crossings(tangled_cloth(run), run.x)) {
+        for (const int i : run.garment.edges.ends[c.edge]) tangle[i] = 1;
+        for (const int i : triangles[c.triangle]) tangle[i] = 1;
+    }
+    for (const ContactPair& p : contact.violations(run.x))
+        if (!p.with_body)
+            for (const int i : p.p) tangle[i] = 1;
+    contact.leave_out(tangle);
     return false;
 }
 
@@ -612,13 +640,13 @@ void settle_level(Run& run) {
     run.begin("settle", 0.85 * std::pow(4.0, run.level) / ((std::pow(4.0, run.levels()) - 1) / 3));
     problem.rest_here(run.x, run.result.friction, run.facts.restarted);
     problem.sheet().softness = run.facts.restarted ? 1 : first ? 1.0 / 16 : 1.0 / 4;
-    if (!take_apart(run, problem.contact())) { // a finer mesh may yet come apart
-        ContactOptions alone = contact;
-        alone.self = false;
-        problem.contact().set_options(alone);
-    }
-    clear_of_body(run, problem, factor);
-    run.stage = "settle";
+    bool tangled = true;
+    const auto untangle_and_clear = [&] {
+        tangled = !take_apart_or_leave_out(run, problem.contact());
+        clear_of_body(run, problem, factor);
+        run.stage = "settle";
+    };
+    untangle_and_clear();
 
     struct Pass {
         double softness;
@@ -649,6 +677,13 @@ void settle_level(Run& run) {
         o.max_iterations = pass.iterations;
         o.exact_below = last_pass ? 20 : 0;
         if (pass.softness == 1 || !first) problem.limit_strain(last_pass && run.last_level() ? hard_limit : soft_limit);
+        // What did not come apart may do so when the cloth has moved.
+        for (int k = 0; tangled && k < most_untangles && !run.stopped; ++k) {
+            SettleOptions some = o;
+            some.max_iterations = std::min(o.max_iterations, untangle_every);
+            run.settle_some(problem, run.x, factor, some);
+            untangle_and_clear();
+        }
         r = run.settle_some(problem, run.x, factor, o);
         // Limits are hardened only where the cloth needs it.
         for (double room = (1 - hard_limit) / 3; last_pass && run.last_level() && room > 1e-3 && !run.stopped; room /= 3) {

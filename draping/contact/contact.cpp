@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace toile {
@@ -259,6 +260,8 @@ void Contact::find_pairs(const std::vector<char>& moved_node) {
             for (int c = begin; c < end; ++c)
                 for (int q = c * query_chunk; q < std::min(queries, (c + 1) * query_chunk); ++q)
                     find(q, [&](ContactPair p) {
+                        const auto out = [&](int i) { return !left_out_.empty() && left_out_[i]; };
+                        if (!p.with_body && std::any_of(p.p.begin(), p.p.end(), out)) return;
                         const Barrier& b = p.with_body ? options_.body : options_.cloth;
                         const auto corner = corners(x, p);
                         const double reach = b.distance + moved(slack, p);
@@ -499,12 +502,18 @@ int Contact::widen(Points& x) {
     return near;
 }
 
-int Contact::violations(const Points& x) {
+std::vector<ContactPair> Contact::violations(const Points& x) {
     built_ = false;
     prepare(x, Eigen::VectorXd::Zero(3 * nodes_));
-    int count = 0;
-    for (const ContactPair& p : pairs_) count += p.built <= barrier(p).floor;
-    return count;
+    std::vector<ContactPair> violated;
+    std::copy_if(pairs_.begin(), pairs_.end(), std::back_inserter(violated),
+                 [&](const ContactPair& p) { return p.built <= barrier(p).floor; });
+    return violated;
+}
+
+void Contact::leave_out(std::vector<char> nodes) {
+    left_out_ = std::move(nodes);
+    built_ = false;
 }
 
 } // namespace toile

@@ -90,8 +90,12 @@ public:
     /// Force of the body's barrier on every node, N.
     Points body_forces(const std::vector<ActivePair>& active) const;
 
-    /// Pairs nearer than their floor, or touching: 0 for a start that the barrier can take.
-    int violations(const Points& x);
+    /// Pairs nearer than their floor, or touching: none for a start that the barrier can take.
+    std::vector<ContactPair> violations(const Points& x);
+
+    /// Nodes of the cloth (1 each, or empty) whose contact with other cloth is left out: what cannot be taken apart
+    /// yet must not keep all the rest from touching.
+    void leave_out(std::vector<char> nodes);
 
     /// Moves nodes of cloth that lie too near each other apart, to twice their floor; returns how many pairs still
     /// are too near. For a start that the barrier cannot take but that crosses nothing.
@@ -123,6 +127,7 @@ private:
     std::vector<std::vector<int>> ring_; ///< groups next to a group, sorted
     std::vector<std::vector<int>> sewn_; ///< groups that stitches to the inside of an edge join to a group, sorted
 
+    std::vector<char> left_out_;
     bool built_ = false;
     std::vector<ContactPair> pairs_;
     std::vector<int> triangle_of_node_; ///< one of each node's

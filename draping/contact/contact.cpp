@@ -18,6 +18,7 @@ constexpr double least_slack = 0.0015;    // m; a list serves at least for motio
 constexpr double slack_per_step = 3;      // and for this many steps of the present size, but for long ones,
 constexpr double most_slack = 0.005;      // m, whose lists would grow too long
 constexpr double most_moved = 0.5;        // share of the nodes; if more have moved, everything is looked for anew
+constexpr double spare_slack = 2;         // times what a node needs, beyond which its slack is taken in
 constexpr int query_chunk = 64;
 
 // A little more than the step, or rounding would take its end for out of reach.
@@ -194,20 +195,22 @@ bool Contact::body_serves(const Points* body_dx) const {
 }
 
 bool Contact::prepare(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx) {
-    // Pairs of nodes that stay within their slack serve on; those of the others are looked for anew.
+    // Pairs of nodes that stay within their slack serve on; those of the others are looked for anew, and those of
+    // nodes that need less slack by now, whose pairs are many.
+    const auto wanted = [&](int i) { return std::max(least_slack, slack_for(dx.segment<3>(3 * i).norm())); };
     std::vector<char> moved(nodes_, 1);
-    int count = nodes_;
     const bool body_serves = this->body_serves(body_dx);
     if (built_ && body_serves) {
-        count = 0;
+        bool serves = true;
         for (int i = 0; i < nodes_; ++i) {
             const Vec3 now = x[i] - built_at_[i];
             moved[i] = now.norm() > slack_[i] || (now + dx.segment<3>(3 * i)).norm() > slack_[i];
-            count += moved[i];
+            serves = serves && !moved[i];
         }
-        if (count == 0) return false;
+        if (serves) return false;
+        for (int i = 0; i < nodes_; ++i) moved[i] = moved[i] || slack_[i] > spare_slack * wanted(i);
     }
-    if (count > most_moved * nodes_) {
+    if (std::count(moved.begin(), moved.end(), 1) > most_moved * nodes_) {
         std::fill(moved.begin(), moved.end(), 1);
         built_ = false;
     }
@@ -215,7 +218,7 @@ bool Contact::prepare(const Points& x, const Eigen::VectorXd& dx, const Points* 
     built_at_.resize(nodes_);
     for (int i = 0; i < nodes_; ++i) {
         if (!moved[i]) continue;
-        slack_[i] = std::max(least_slack, slack_for(dx.segment<3>(3 * i).norm()));
+        slack_[i] = wanted(i);
         built_at_[i] = x[i];
     }
     if (!body_serves) {

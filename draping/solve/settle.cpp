@@ -22,6 +22,7 @@ constexpr int old_factor_cg = 25;  // CG iterations after which the factor is re
 constexpr double worth_parting = 0.9; // share of a step below which every point goes as far as it can by itself
 constexpr double sufficient = 1e-4;   // of the decrease that the slope promises
 constexpr double static_time_step = 100; // s: from there on steps are Newton's
+constexpr double too_stiff = 1.2;        // gain over what was promised from which longer steps are looked for
 constexpr double tail_time_step = 1; // s: before that the state is still travelling, however small the forces
 
 double longest(const VectorXd& dx) {
@@ -190,6 +191,7 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
     double h = options.time_step;
     double radius = 0; // of the trust region, 0 while not in the tail
     int failures = 0;
+    double gained = 0; // by the last step, as a share of what the matrix promised
     bool still = false, tail = false, stale = false;
     std::vector<double> shares;
 
@@ -260,7 +262,7 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
         double t = problem.feasible_step(x, dx, &shares);
         if (t < worth_parting) {
             if (const double own = run.part(x, g, shares, t, dx); own > 0) t = own;
-        } else if (t == 1 && !tail && h > static_time_step && reach < options.max_step && last.size() == dx.size()) {
+        } else if (t == 1 && !tail && h > static_time_step && reach < options.max_step && gained > too_stiff) {
             run.lengthen(x, g, last, dx);
         }
         const double feasible = t;
@@ -285,6 +287,7 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
             }
             t *= 0.5;
         }
+        gained = accepted && predicted > 0 ? actual / predicted : 0;
         if (radius > 0) {
             const double ratio = predicted > 0 ? actual / predicted : 0;
             if (!accepted || t < feasible || ratio < 0.25)

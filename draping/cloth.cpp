@@ -139,9 +139,13 @@ void ClothProblem::take_up_friction(const Points& x) {
     }
 }
 
-void ClothProblem::arrive(const Points& x) {
+void ClothProblem::touch(const Points& x) {
     contact_.prepare(x, Eigen::VectorXd::Zero(3 * points()));
     active_ = contact_.active(x);
+}
+
+void ClothProblem::arrive(const Points& x) {
+    touch(x);
     if (friction.coefficient == 0) return;
     if (trusted_) {
         take_up_friction(x);

@@ -52,6 +52,9 @@ public:
     int worst_node() const { return worst_; }
     int blocking_pair() const { return blocking_; } ///< -1: none limited the last step asked for with shares
 
+    /// Finds the pairs that act at x, on which gradient() and hessian() stand; what is lagged stays as it is.
+    void touch(const Points& x);
+
     int points() const override { return int(node_mass_.size()); }
     void arrive(const Points& x) override;
     double value(const Points& x) override;

@@ -60,7 +60,7 @@ TEST_CASE("contact: a step that would pass through ends before it") {
     Points moved = x;
     flat(moved) += t * down;
     contact.prepare(moved, Eigen::VectorXd::Zero(18));
-    CHECK(contact.violations(moved) == 0);
+    CHECK(contact.violations(moved).empty());
 
     Eigen::VectorXd up = -down;
     contact.prepare(x, up);

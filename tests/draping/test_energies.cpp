@@ -234,18 +234,17 @@ void add_problem(std::vector<EnergyCase>& cases) {
         x.push_back(Vec3(p.x(), 0.003 + 0.002 * std::sin(40 * p.x()), p.y() - 0.05) + random.vec3(5e-4));
     problem->rest_here(shaken(x, 1e-4, 8), 0.4);
     problem->arrive(x);
-    const VectorXd still = VectorXd::Zero(3 * x.size());
     const TestedEnergy energy{
         "cloth problem", [=](const Points& at) { return problem->value(at); },
         [=](const Points& at, Points& g) {
             VectorXd part;
-            problem->feasible_step(at, still); // renews the pairs that act, and no more
+            problem->touch(at);
             problem->gradient(at, part);
             flat(g) += part;
         },
         [=](const Points& at, HessianKind kind) {
             bool changed = false;
-            problem->feasible_step(at, still);
+            problem->touch(at);
             const BlockMatrix& h = problem->hessian(at, kind == HessianKind::exact, changed);
             if (kind == HessianKind::projected) return dense(h);
             return dense(h.rows(), [&](const VectorXd& v, VectorXd& y) { problem->multiply(v, y); });

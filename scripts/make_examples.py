@@ -17,7 +17,7 @@ import pathlib
 # The built-in form of 1.68 m, bust 90, waist 72, hip 96. Heights are above the floor; x is to one side.
 BODY = {
     "bust": 90, "waist": 72, "hip": 96,
-    "waist_ease": 1,                           # of skirts and trousers, which then rest 3 cm lower
+    "waist_ease": -0.5,                        # of skirts and trousers, which rest 2 to 3 cm lower where it is 1
     "bust_y": 121.5, "waist_y": 106.2, "hip_y": 83.2, "crotch_y": 74.1, "armpit_y": 123.3,
     "neck_x": 8.0, "neck_y": 143.0,            # where the neck meets the shoulder
     "shoulder_x": 18.5, "shoulder_y": 137.9,   # tip of the shoulder

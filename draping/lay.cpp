@@ -72,19 +72,26 @@ void collect_threads(Laying& l) {
     }
 }
 
-/// How far along from a to b the body's surface is met last, as a share; -1 where it is not.
-double last_meeting(const Laying& l, const Vec3& a, const Vec3& b) {
+/// Where the way from a to b meets the body's surface.
+struct Meetings {
+    int count = 0;
+    double last = 0; ///< as a share of the way
+};
+
+Meetings meet(const Laying& l, const Vec3& a, const Vec3& b) {
     Box box;
     box.extend(a);
     box.extend(b);
-    double last = -1;
+    Meetings m;
     l.body_tree.overlapping(box, [&](int t) {
         const Triangle& c = l.body.triangles[t];
         const Points& p = l.body.points;
-        if (const auto at = segment_through_triangle(a, b, p[c[0]], p[c[1]], p[c[2]]))
-            last = std::max(last, at->along);
+        const auto at = segment_through_triangle(a, b, p[c[0]], p[c[1]], p[c[2]]);
+        if (!at) return;
+        ++m.count;
+        m.last = std::max(m.last, at->along);
     });
-    return last;
+    return m;
 }
 
 /// The pose that brings a piece's seam points nearest to what they are sewn to, shifted only or turned as well. Seams
@@ -123,40 +130,43 @@ Pose fit(const Laying& l, int piece, bool turn) {
 }
 
 /// How far a piece must go on along its right side's normal until the body no longer lies before that side; 0 where
-/// less than a tenth of it sees the body.
-double through_to_outside(const Laying& l, int piece, const Pose& pose) {
+/// less than a tenth of it sees the body. What lies in the body counts as well in a new place, but not where the file
+/// puts it: place_clear() pushes it out by the shortest way.
+double through_to_outside(const Laying& l, int piece, const Pose& pose, bool new_place) {
     const Vec3 normal = pose.rotation * l.pieces[piece].normal;
     int seen = 0;
     double farthest = 0;
     for (int i : l.pieces[piece].nodes) {
         const Vec3 from = pose(l.x[i]);
-        const double last = last_meeting(l, from, from + view * normal);
-        seen += last >= 0;
-        farthest = std::max(farthest, last * view);
+        const Meetings m = meet(l, from, from + view * normal);
+        const bool in_body = m.count % 2 != 0;
+        if (m.count == 0 || (in_body && !new_place)) continue;
+        ++seen;
+        farthest = std::max(farthest, m.last * view);
     }
     return 10 * seen > int(l.pieces[piece].nodes.size()) ? farthest + beyond : 0;
 }
 
 /// Mean length of a piece's threads were it moved, and more where its right side would look at the body, m.
-double badness(const Laying& l, int piece, const Pose& pose) {
+double badness(const Laying& l, int piece, const Pose& pose, bool new_place) {
     double sum = 0, length = 0;
     for (const Thread& t : l.threads[piece]) {
         const double weight = l.garment.stitches[t.stitch].length;
         const Vec3 near = pose(l.near_end(t)), far = l.far_end(t);
-        sum += weight * ((near - far).norm() + (last_meeting(l, near, far) >= 0 ? around : 0));
+        sum += weight * ((near - far).norm() + (meet(l, near, far).count > 0 ? around : 0));
         length += weight;
     }
     return sum / length + turning * Eigen::AngleAxisd(pose.rotation).angle() +
-           (through_to_outside(l, piece, pose) > 0 ? wrong_side : 0);
+           (through_to_outside(l, piece, pose, new_place) > 0 ? wrong_side : 0);
 }
 
 /// Where a piece is least badly off.
 Pose best_pose(const Laying& l, int piece) {
     Pose best;
-    double least = badness(l, piece, best);
+    double least = badness(l, piece, best, false);
     for (Pose pose : {Pose{}, fit(l, piece, false), fit(l, piece, true)}) {
-        pose.shift += through_to_outside(l, piece, pose) * (pose.rotation * l.pieces[piece].normal);
-        const double bad = badness(l, piece, pose);
+        pose.shift += through_to_outside(l, piece, pose, true) * (pose.rotation * l.pieces[piece].normal);
+        const double bad = badness(l, piece, pose, true);
         if (bad >= least) continue;
         least = bad;
         best = pose;
@@ -172,7 +182,7 @@ bool may_move(const Laying& l, int piece, const LayOptions& options) {
 /// Whether right sides tell where a piece belongs: those of most look away from the body.
 bool sides_known(const Laying& l) {
     int away = 0;
-    for (int i = 0; i < int(l.pieces.size()); ++i) away += through_to_outside(l, i, {}) == 0;
+    for (int i = 0; i < int(l.pieces.size()); ++i) away += through_to_outside(l, i, {}, false) == 0;
     return 2 * away >= int(l.pieces.size());
 }
 
@@ -197,7 +207,7 @@ Laid lay_anew(const Garment& garment, const Points& x, const TriMesh& body, cons
         for (int i = 0; i < count; ++i) {
             if (!may_move(l, i, options)) continue;
             const Pose pose = best_pose(l, i);
-            const double gain = badness(l, i, {}) - badness(l, i, pose);
+            const double gain = badness(l, i, {}, false) - badness(l, i, pose, true);
             if (gain <= most) continue;
             most = gain;
             best = i;

@@ -60,6 +60,12 @@ TEST_CASE("a panel in the place of another, its right side to the body, goes thr
     CHECK(std::abs(at.y() + 0.12) < 0.05);
 }
 
+TEST_CASE("a panel that lies in the body stays for place_clear() to push out") {
+    Cloth c = tabard();
+    put(c, 0, Mat3::Identity(), {0, 0, -0.08});
+    CHECK(lay_anew(c.garment, c.x, body).moved.empty());
+}
+
 TEST_CASE("a panel far off goes to what it is sewn to") {
     Cloth c = tabard();
     put(c, 2, Mat3::Identity(), {0.5, 0.1, 0.05});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Real garments from file to files, as a table: bench_drape 20mm [name ...]. Patterns, bodies and fabrics are those
 // of garmentcode/MANIFEST.tsv in the folder that TOILE_TEST_DATA names; without names, all that are to be draped.
+#include "bench/manifest.h"
 #include "src/quantity.h"
 #include "src/pipeline.h"
 #include "tests/support/temp_folder.h"
@@ -12,37 +13,16 @@
 #include <cstdio>
 #include <cstdlib>
 #include <ctime>
-#include <fstream>
-#include <sstream>
 
 using namespace toile;
 
 namespace {
 
-struct Entry {
-    std::string name, body, fabric, expect;
-};
-
-std::vector<Entry> manifest(const std::string& folder) {
-    std::vector<Entry> entries;
-    std::ifstream file(folder + "/MANIFEST.tsv");
-    std::string line;
-    std::getline(file, line); // the heading
-    while (std::getline(file, line)) {
-        std::istringstream fields(line);
-        Entry e;
-        for (std::string* field : {&e.name, &e.body, &e.fabric, &e.expect}) std::getline(fields, *field, '\t');
-        e.name = e.name.substr(0, e.name.find("_specification"));
-        entries.push_back(e);
-    }
-    return entries;
-}
-
-void drape_one(const Entry& e, const std::string& data, double edge_length) {
+void drape_one(const ManifestEntry& e, const std::string& data, double edge_length) {
     const test::TempFolder folder;
     DrapeJob job;
-    job.pattern = data + "/garmentcode/" + e.name + "_specification.json";
-    job.avatar = data + "/bodies/" + e.body;
+    job.pattern = pattern_file(data, e);
+    job.avatar = body_file(data, e);
     job.fabric = e.fabric;
     job.edge_length = edge_length;
     job.garments = {folder / "a.obj", folder / "a.glb"};
@@ -82,7 +62,7 @@ int main(int count, char** words) {
     std::printf("| garment | body, fabric | vertices | iterations by level | factorisations | s | CPU s | status | residual | "
                 "warp, weft max %% | compressed %% | clearance mm | crossings | MB |\n"
                 "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-    for (const Entry& e : manifest(std::string(data) + "/garmentcode")) {
+    for (const ManifestEntry& e : read_manifest(data)) {
         const bool chosen = std::find(names.begin(), names.end(), e.name) != names.end();
         if (names.empty() ? e.expect != "refused" : chosen) drape_one(e, data, parse_length(words[1]));
     }

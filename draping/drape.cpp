@@ -5,6 +5,7 @@
 #include "draping/contact/untangle.h"
 #include "draping/decisions.h"
 #include "draping/hooks.h"
+#include "draping/lay.h"
 #include "draping/place.h"
 #include "draping/solve/settle.h"
 #include "draping/where.h"
@@ -102,6 +103,7 @@ struct Run {
     Garment garment = {};      ///< of the level at work, closed
     std::vector<int> joined = {}; ///< its node of every one of the open garment, on the coarsest level
     Points x = {};             ///< its nodes
+    Laid laid = {};            ///< the coarsest level where it starts out
     bool grown = true;         ///< the body has its full size
     std::vector<std::string> held = {}, carried = {}; ///< labels of hooks that stay, and of those that are let go
     std::map<std::string, double> carried_at = {}; ///< mean height of each of these where the file puts it
@@ -230,7 +232,8 @@ void choose_hooks(Run& run) {
     for (const std::string& label : labels)
         if (carries(label) && std::find(run.held.begin(), run.held.end(), label) == run.held.end())
             run.carried.push_back(label);
-    run.carried_at = label_heights(staged.garment, staged.placed, all_hooked(run));
+    const bool anew = run.level == 0 && !run.laid.x.empty();
+    run.carried_at = label_heights(staged.garment, anew ? run.laid.x : staged.placed, all_hooked(run));
 }
 
 /// What acts on a closed garment at every level beside cloth, contact and weight: pins, bands, hooks that stay and
@@ -412,11 +415,22 @@ void note_open_seam(const Run& run, const ClothProblem& problem, Sewn& sewn) {
                            100 * missing);
 }
 
-PlaceOptions place_options(const Run& run) {
-    PlaceOptions o;
-    o.fixed.assign(run.staging.levels[0].garment.panel_names.size(), false);
-    for (const Pin& pin : run.staging.pins) o.fixed[pin.span.panel] = true;
-    return o;
+std::vector<bool> pinned_panels(const Run& run) {
+    std::vector<bool> pinned(run.staging.levels[0].garment.panel_names.size(), false);
+    for (const Pin& pin : run.staging.pins) pinned[pin.span.panel] = true;
+    return pinned;
+}
+
+/// Lays panels anew that lie far from what they are sewn to.
+void lay(Run& run) {
+    const StagedLevel& staged = run.staging.levels[0];
+    LayOptions o;
+    o.fixed = pinned_panels(run);
+    run.laid = lay_anew(staged.garment, staged.placed, run.body, o);
+    for (const LaidPanel& p : run.laid.moved)
+        run.result.decisions.push_back(
+            text("panel \"%s\" was moved %.0f mm and turned %.0f degrees before sewing, to what it is sewn to",
+                 staged.garment.panel_names[p.panel].c_str(), 1e3 * p.moved, p.turned * 180 / EIGEN_PI));
 }
 
 void note_pushes(Run& run, const PlacedClear& placed) {
@@ -428,9 +442,11 @@ void note_pushes(Run& run, const PlacedClear& placed) {
 }
 
 Start place(const Run& run, double lift) {
-    Points lifted = run.staging.levels[0].placed;
+    Points lifted = run.laid.x;
     for (Vec3& p : lifted) p.y() += lift;
-    return {lift, place_clear(run.staging.levels[0].garment, lifted, run.body, place_options(run))};
+    PlaceOptions o;
+    o.fixed = pinned_panels(run);
+    return {lift, place_clear(run.staging.levels[0].garment, lifted, run.body, o)};
 }
 
 Sewn sew_open(Run& run, const Start& start, bool self) {
@@ -479,7 +495,7 @@ void sew_coarsest(Run& run) {
     };
     try_from(place(run, 0));
     if (sewn.open && !run.stopped && run.staging.pins.empty())
-        if (const double lift = free_height(staged.garment, staged.placed, run.body); lift != 0)
+        if (const double lift = free_height(staged.garment, run.laid.x, run.body); lift != 0)
             try_from(place(run, lift));
     run.x = merge(run.garment, run.joined, sewn.x);
     if (sewn.start.lift != 0)
@@ -776,6 +792,7 @@ bool start_again(Run& run) {
 }
 
 void sew_and_drape(Run& run) {
+    lay(run);
     choose_hooks(run);
     sew_coarsest(run);
     if (run.open) return;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/place.h"
 
+#include "draping/pieces.h"
 #include "geometry/bvh.h"
 #include "geometry/disjoint_sets.h"
 #include "geometry/distance.h"
@@ -48,14 +49,10 @@ double distance_to(const Vec3& p, const Corners& t) {
     return nearest_point_triangle(p, t[0], t[1], t[2]).squared;
 }
 
-/// Panels that share nodes, which move together: one panel each, unless seams are closed already.
-struct Piece {
-    std::vector<int> panels;    ///< ascending
-    std::vector<int> triangles; ///< of the garment
-    std::vector<int> nodes;     ///< ascending
-    Vec3 normal = Vec3::Zero(), middle = Vec3::Zero();
+/// A piece on its way to its place.
+struct PlacedPiece : Piece {
     Vec3 push = Vec3::Zero();
-    Bvh tree; ///< of its triangles where the file puts them
+    Bvh tree = {}; ///< of its triangles where the file puts them
     bool placed = false;
 };
 
@@ -64,7 +61,7 @@ struct Placing {
     const Points& x;
     const TriMesh& body;
     const PlaceOptions& options;
-    std::vector<Piece> pieces = {};
+    std::vector<PlacedPiece> pieces = {};
     Bvh body_tree = {};
     std::vector<int> group = {};             ///< of a node: nodes that stitches of no length join
     std::vector<double> reach = {};          ///< m, of a node: smallest altitude of the triangles round it
@@ -130,50 +127,12 @@ double wanted_distance(const Placing& p, int s, int t) {
     return wanted;
 }
 
-/// Numbers in the order of their first panels.
-std::vector<int> pieces_of_panels(const Garment& g) {
-    DisjointSets together(int(g.panel_names.size()));
-    std::vector<int> first(g.node_count, -1);
-    for (std::size_t v = 0; v < g.node_of_vertex.size(); ++v) {
-        int& other = first[g.node_of_vertex[v]];
-        if (other < 0) other = g.panel_of_vertex[v];
-        together.join(other, g.panel_of_vertex[v]);
-    }
-    const std::vector<int> root = together.all();
-    std::vector<int> number(root.size());
-    int count = 0;
-    for (int i = 0; i < int(root.size()); ++i)
-        number[i] = root[i] == i ? count++ : number[root[i]];
-    return number;
-}
-
 void collect_pieces(Placing& p) {
-    const Garment& g = p.garment;
-    const std::vector<int> piece_of = pieces_of_panels(g);
-    for (int i = 0; i < int(piece_of.size()); ++i) {
-        if (piece_of[i] == int(p.pieces.size())) p.pieces.emplace_back();
-        p.pieces[piece_of[i]].panels.push_back(i);
-    }
-    for (int t = 0; t < int(g.triangles.size()); ++t)
-        p.pieces[piece_of[g.panel_of_triangle[t]]].triangles.push_back(t);
-    for (Piece& piece : p.pieces) {
-        double area = 0;
+    for (Piece& piece : pieces_of(p.garment, p.x)) {
+        p.pieces.push_back({std::move(piece)});
         std::vector<Box> boxes;
-        for (int t : piece.triangles) {
-            const Corners c = p.corners(t, Vec3::Zero());
-            const Vec3 n = 0.5 * (c[1] - c[0]).cross(c[2] - c[0]);
-            piece.normal += n;
-            piece.middle += n.norm() * (c[0] + c[1] + c[2]) / 3;
-            area += n.norm();
-            boxes.push_back(p.box(t, Vec3::Zero(), 0));
-            for (int i : g.nodes(t))
-                piece.nodes.push_back(i);
-        }
-        if (area > 0) piece.middle /= area;
-        if (piece.normal.norm() > 0) piece.normal.normalize();
-        std::sort(piece.nodes.begin(), piece.nodes.end());
-        piece.nodes.erase(std::unique(piece.nodes.begin(), piece.nodes.end()), piece.nodes.end());
-        piece.tree = Bvh(boxes);
+        for (int t : p.pieces.back().triangles) boxes.push_back(p.box(t, Vec3::Zero(), 0));
+        p.pieces.back().tree = Bvh(boxes);
     }
 }
 
@@ -208,7 +167,7 @@ bool near_body(const Placing& p, const Piece& piece, const Vec3& push) {
 }
 
 bool near_cloth(const Placing& p, const Piece& piece, const Vec3& push) {
-    for (const Piece& other : p.pieces) {
+    for (const PlacedPiece& other : p.pieces) {
         if (!other.placed || &other == &piece) continue;
         const Vec3 relative = push - other.push;
         const bool together = relative.norm() < no_length;
@@ -245,10 +204,7 @@ double distance_from_body(const Placing& p, const Piece& piece) {
     return nearest;
 }
 
-bool fixed(const Placing& p, const Piece& piece) {
-    return !p.options.fixed.empty() && std::any_of(piece.panels.begin(), piece.panels.end(),
-                                                   [&](int i) { return bool(p.options.fixed[i]); });
-}
+bool fixed(const Placing& p, const Piece& piece) { return any_of_panels(piece, p.options.fixed); }
 
 std::vector<int> order_of_placing(const Placing& p) {
     std::vector<std::tuple<bool, int, double>> key; // fixed ones first, then layer by layer
@@ -262,7 +218,7 @@ std::vector<int> order_of_placing(const Placing& p) {
 }
 
 /// The smallest push that clears the panel; false when there is none.
-bool find_push(const Placing& p, Piece& piece, const Vec3& axis) {
+bool find_push(const Placing& p, PlacedPiece& piece, const Vec3& axis) {
     Vec3 outward = piece.middle - axis;
     outward.y() = 0;
     std::vector<Vec3> ways{piece.normal, -piece.normal};
@@ -321,7 +277,7 @@ PlacedClear place_clear(const Garment& garment, const Points& x, const TriMesh& 
     collect_pieces(p);
     PlacedClear result;
     for (int i : order_of_placing(p)) {
-        Piece& piece = p.pieces[i];
+        PlacedPiece& piece = p.pieces[i];
         if (!fixed(p, piece) && !clear(p, piece, Vec3::Zero())) {
             const bool from_body = near_body(p, piece, Vec3::Zero()), found = find_push(p, piece, axis);
             for (int panel : piece.panels) {
@@ -334,7 +290,7 @@ PlacedClear place_clear(const Garment& garment, const Points& x, const TriMesh& 
         piece.placed = true;
     }
     result.x = x;
-    for (const Piece& piece : p.pieces)
+    for (const PlacedPiece& piece : p.pieces)
         for (int i : piece.nodes)
             result.x[i] += piece.push;
     return result;

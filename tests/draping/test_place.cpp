@@ -3,6 +3,7 @@
 
 #include "geometry/distance.h"
 #include "geometry/intersections.h"
+#include "tests/support/sewn_squares.h"
 #include "tests/support/shapes.h"
 
 #include <catch2/catch.hpp>
@@ -14,40 +15,6 @@ using namespace toile;
 using namespace toile::test;
 
 namespace {
-
-struct Cloth {
-    Garment garment;
-    Points x;
-};
-
-/// Adds a square panel of 20 cm in 10 x 10 cells about `middle`, spanned by u and v; its front looks along u
-/// x v.
-void add_panel(Cloth& c, const Vec3& middle, const Vec3& u, const Vec3& v, int layer = 0) {
-    constexpr int n = 10;
-    Garment& g = c.garment;
-    const int panel = int(g.panel_names.size()), first = g.node_count;
-    g.panel_names.push_back("panel " + std::to_string(panel));
-    g.panel_layers.push_back(layer);
-    for (int j = 0; j <= n; ++j)
-        for (int i = 0; i <= n; ++i) {
-            const Vec2 at(0.02 * i - 0.1, 0.02 * j - 0.1);
-            g.uv.push_back(at);
-            g.panel_of_vertex.push_back(panel);
-            g.node_of_vertex.push_back(g.node_count++);
-            c.x.push_back(middle + at.x() * u + at.y() * v);
-        }
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i) {
-            const int a = first + j * (n + 1) + i, b = a + n + 1;
-            g.triangles.insert(g.triangles.end(), {{a, a + 1, b + 1}, {a, b + 1, b}});
-            g.panel_of_triangle.insert(g.panel_of_triangle.end(), 2, panel);
-        }
-    g.edges = make_edges(node_triangles(g), g.node_count);
-}
-
-void add_front(Cloth& c, const Vec3& middle, int layer = 0) {
-    add_panel(c, middle, Vec3::UnitX(), Vec3::UnitY(), layer);
-}
 
 TriMesh panel_mesh(const Cloth& c, const Points& x, int panel) {
     TriMesh m{x, {}};

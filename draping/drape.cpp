@@ -578,10 +578,10 @@ TangledCloth tangled_cloth(const Run& run) {
 
 /// Cloth that crosses itself after sewing, or only on the finer mesh, is taken apart before contact takes over.
 /// Returns whether nothing crosses and nothing is too near.
-bool take_apart(Run& run, Contact& contact) {
+bool take_apart(Run& run, Contact& contact, const UntangleOptions& how) {
     const TangledCloth tangled = tangled_cloth(run);
     for (int round = 0; round < 10; ++round) {
-        const Untangled u = untangle(tangled, run.x);
+        const Untangled u = untangle(tangled, run.x, how);
         run.facts.untangled = std::max(run.facts.untangled, u.before);
         if (u.after > 0) return false;
         if (contact.widen(run.x) == 0 && find_crossings(tangled, run.x).empty()) return true;
@@ -589,21 +589,34 @@ bool take_apart(Run& run, Contact& contact) {
     return false;
 }
 
-/// Takes the cloth apart, or as much of it as will come; what does not is left out of contact with other cloth, and
-/// false returned.
-bool take_apart_or_leave_out(Run& run, Contact& contact) {
-    contact.leave_out({});
-    if (take_apart(run, contact)) return true;
+/// What crosses or is too near is left out of contact with other cloth.
+void leave_out_tangle(const Run& run, Contact& contact) {
     std::vector<char> tangle(run.garment.node_count, 0);
     const std::vector<Triangle> triangles = node_triangles(run.garment);
     for (const ClothCrossing& c : find_crossings(tangled_cloth(run), run.x)) {
         for (const int i : run.garment.edges.ends[c.edge]) tangle[i] = 1;
         for (const int i : triangles[c.triangle]) tangle[i] = 1;
     }
+    contact.leave_out({});
     for (const ContactPair& p : contact.violations(run.x))
         if (!p.with_body)
             for (const int i : p.p) tangle[i] = 1;
     contact.leave_out(tangle);
+}
+
+/// Takes the cloth apart unless that would push it into the body; what then still crosses is left out of contact, and
+/// false returned.
+bool take_apart_or_leave_out(Run& run, Contact& contact) {
+    const auto in_body = [&] { return count_intersections(node_triangles(run.garment), run.x, run.body).cloth_avatar; };
+    const int deep = 2 * in_body(); // a level starts with some, where fine triangles cut the curves of coarse ones
+    const Points before = run.x;
+    // A few crossings in a tight place need small motions, folds that lie in each other large ones.
+    for (const UntangleOptions& how : {UntangleOptions{0.4, 8}, UntangleOptions{0.1, 2}}) {
+        contact.leave_out({});
+        if (take_apart(run, contact, how) && in_body() <= deep) return true;
+        run.x = before;
+    }
+    leave_out_tangle(run, contact);
     return false;
 }
 
@@ -659,12 +672,12 @@ void settle_level(Run& run) {
     problem.rest_here(run.x, run.result.friction, run.facts.restarted);
     problem.sheet().softness = run.facts.restarted ? 1 : first ? 1.0 / 16 : 1.0 / 4;
     bool tangled = true;
-    const auto untangle_and_clear = [&] {
+    const auto untangle = [&] {
         tangled = !take_apart_or_leave_out(run, problem.contact());
         clear_of_body(run, problem, factor);
         run.stage = "settle";
     };
-    untangle_and_clear();
+    untangle();
 
     struct Pass {
         double softness;
@@ -700,7 +713,7 @@ void settle_level(Run& run) {
             SettleOptions some = o;
             some.max_iterations = std::min(o.max_iterations, untangle_every);
             run.settle_some(problem, run.x, factor, some);
-            untangle_and_clear();
+            untangle();
         }
         r = run.settle_some(problem, run.x, factor, o);
         // Limits are hardened only where the cloth needs it.

@@ -13,9 +13,7 @@ namespace toile {
 
 namespace {
 
-constexpr double longest_step = 0.4; // of the edge length, in one round
-constexpr int spread = 8;            // rounds of averaging with the neighbours
-constexpr double straight = 0.2;     // length of the summed directions below which a contour counts as straight
+constexpr double straight = 0.2; // length of the summed directions below which a contour counts as straight
 
 Vec3 normal_of(const Points& x, const Triangle& t) { return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]); }
 
@@ -80,13 +78,13 @@ std::vector<ClothCrossing> find_crossings(const TangledCloth& cloth, const Point
     return all;
 }
 
-Untangled untangle(const TangledCloth& cloth, Points& x, int max_rounds) {
+Untangled untangle(const TangledCloth& cloth, Points& x, const UntangleOptions& options) {
     Untangled result;
     for (;; ++result.rounds) {
         const std::vector<ClothCrossing> crossings = find_crossings(cloth, x);
         result.after = int(crossings.size());
         if (result.rounds == 0) result.before = result.after;
-        if (crossings.empty() || result.rounds == max_rounds) return result;
+        if (crossings.empty() || result.rounds == options.max_rounds) return result;
         Points step(x.size(), Vec3::Zero());
         std::vector<double> weight(x.size(), 0.0);
         for (const ClothCrossing& c : crossings) {
@@ -96,7 +94,7 @@ Untangled untangle(const TangledCloth& cloth, Points& x, int max_rounds) {
             const Vec3 r = contour_direction(cloth, x, c, normal);
             Vec3 g = r - 2 * edge.dot(r) / edge.dot(normal) * normal;
             if (!(g.norm() > 0) || !g.allFinite()) continue;
-            g *= longest_step * cloth.edge_length * std::min(1.0, r.norm() / straight) / g.norm();
+            g *= options.longest_step * cloth.edge_length * std::min(1.0, r.norm() / straight) / g.norm();
             const auto add = [&](int node, double share, double sign) {
                 step[node] += sign * share * g;
                 weight[node] += share;
@@ -107,7 +105,7 @@ Untangled untangle(const TangledCloth& cloth, Points& x, int max_rounds) {
         }
         for (std::size_t i = 0; i < x.size(); ++i)
             if (weight[i] > 0) step[i] /= std::max(weight[i], 0.5);
-        for (int k = 0; k < spread; ++k) step = averaged(cloth, step);
+        for (int k = 0; k < options.spread; ++k) step = averaged(cloth, step);
         for (std::size_t i = 0; i < x.size(); ++i) x[i] += step[i];
     }
 }

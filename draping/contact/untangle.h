@@ -32,7 +32,14 @@ struct Untangled {
     int rounds = 0;
 };
 
+/// How far the cloth round a crossing is taken along.
+struct UntangleOptions {
+    double longest_step = 0.4; ///< of the edge length, in one round
+    int spread = 8;            ///< rounds of averaging with the neighbours
+    int max_rounds = 400;
+};
+
 /// Moves the nodes of `x` near crossings until there are none, or `max_rounds` are over.
-Untangled untangle(const TangledCloth& cloth, Points& x, int max_rounds = 400);
+Untangled untangle(const TangledCloth& cloth, Points& x, const UntangleOptions& options = {});
 
 } // namespace toile

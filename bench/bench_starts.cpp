@@ -87,8 +87,6 @@ bool drape_case(int number, const ManifestEntry& e, const std::string& data, dou
                 two_in_one_place ? "two in one place" : "turned, moved", to_string(r.status), wall,
                 iterations.c_str(), n.cloth_avatar, n.cloth_cloth, r.where.c_str());
     std::fflush(stdout);
-    if (std::getenv("TOILE_BENCH_DECISIONS"))
-        for (const std::string& d : r.decisions) std::printf("<!-- %s -->\n", d.c_str());
     return r.status == DrapeStatus::converged && n.cloth_avatar + n.cloth_cloth == 0;
 }
 

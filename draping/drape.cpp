@@ -748,7 +748,7 @@ void settle_level(Run& run) {
 
 /// What the promises that a residual does not show have come to.
 void prove(Run& run) {
-    if (run.stopped) return;
+    if (run.stopped || run.result.status == DrapeStatus::too_small) return; // what is too small slides as well
     for (const auto& [label, height] : label_heights(run.garment, run.x, all_hooked(run))) {
         const double drop = run.carried_at[label] - height;
         if (drop < slid) continue;

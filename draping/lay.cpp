@@ -24,7 +24,7 @@ constexpr double near_gap = 0.03;   // m, below which all gaps weigh the same
 constexpr double as_it_was = 1e-4;  // m2, weight of the present rotation where seams leave a turn free
 constexpr double flat = 0.5;        // size of a piece's mean normal: below, it has no side
 constexpr int reweightings = 8;
-constexpr int moves_per_piece = 4;  // on average; the threads in all get shorter with each, so this is rarely met
+constexpr int moves_per_piece = 4;  // on average, so that it ends
 
 struct Pose {
     Mat3 rotation = Mat3::Identity();
@@ -40,6 +40,7 @@ struct Thread {
     bool from_a = false; ///< this end is the stitch's node
 };
 
+/// A garment whose pieces are being laid.
 struct Laying {
     const Garment& garment;
     const TriMesh& body;
@@ -94,8 +95,9 @@ Meetings meet(const Laying& l, const Vec3& a, const Vec3& b) {
     return m;
 }
 
-/// The pose that brings a piece's seam points nearest to what they are sewn to, shifted only or turned as well. Seams
-/// in one line leave a turn free: a little weight on no rotation keeps it small.
+/// The pose that brings a piece's seam points nearest to what they are sewn to, shifted only or turned as well
+/// (Kabsch 1976, reweighted toward least distances). Seams in one line leave a turn free: a little weight on no
+/// rotation keeps it small.
 Pose fit(const Laying& l, int piece, bool turn) {
     Pose pose;
     for (int round = 0; round < reweightings; ++round) {
@@ -129,9 +131,9 @@ Pose fit(const Laying& l, int piece, bool turn) {
     return pose;
 }
 
-/// How far a piece must go on along its right side's normal until the body no longer lies before that side; 0 where
-/// less than a tenth of it sees the body. What lies in the body counts as well in a new place, but not where the file
-/// puts it: place_clear() pushes it out by the shortest way.
+/// How far a piece must go on along its right side's normal until the body no longer lies before that side; 0
+/// where less than a tenth of it sees the body. What lies in the body counts as well in a new place, but not
+/// where the file puts it: place_clear() pushes it out by the shortest way.
 double through_to_outside(const Laying& l, int piece, const Pose& pose, bool new_place) {
     const Vec3 normal = pose.rotation * l.pieces[piece].normal;
     int seen = 0;
@@ -225,7 +227,8 @@ Laid lay_anew(const Garment& garment, const Points& x, const TriMesh& body, cons
         for (int panel : l.pieces[i].panels)
             laid.moved.push_back({panel, moved, Eigen::AngleAxisd(total[i].rotation).angle()});
     }
-    std::sort(laid.moved.begin(), laid.moved.end(), [](const auto& a, const auto& b) { return a.panel < b.panel; });
+    std::sort(laid.moved.begin(), laid.moved.end(),
+              [](const LaidPanel& a, const LaidPanel& b) { return a.panel < b.panel; });
     laid.x = std::move(l.x);
     return laid;
 }

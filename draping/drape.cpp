@@ -607,13 +607,14 @@ void leave_out_tangle(const Run& run, Contact& contact) {
 /// Takes the cloth apart unless that would push it into the body; what then still crosses is left out of contact, and
 /// false returned.
 bool take_apart_or_leave_out(Run& run, Contact& contact) {
-    const auto in_body = [&] { return count_intersections(node_triangles(run.garment), run.x, run.body).cloth_avatar; };
-    const int deep = 2 * in_body(); // a level starts with some, where fine triangles cut the curves of coarse ones
+    const std::vector<Triangle> cloth = node_triangles(run.garment);
+    const auto in_body = [&](const Points& x) { return count_intersections(cloth, x, run.body).cloth_avatar; };
     const Points before = run.x;
-    // A few crossings in a tight place need small motions, folds that lie in each other large ones.
+    // A few crossings in a tight place need small motions, folds that lie in each other large ones. A level starts
+    // with some of the cloth in the body, where fine triangles cut the curves of coarse ones.
     for (const UntangleOptions& how : {UntangleOptions{0.4, 8}, UntangleOptions{0.1, 2}}) {
         contact.leave_out({});
-        if (take_apart(run, contact, how) && in_body() <= deep) return true;
+        if (take_apart(run, contact, how) && (run.x == before || in_body(run.x) <= 2 * in_body(before))) return true;
         run.x = before;
     }
     leave_out_tangle(run, contact);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "patterns/triangulate.h"
 
+#include "geometry/disjoint_sets.h"
 #include "geometry/parallel.h"
 #include "patterns/border_plan.h"
 #include "patterns/curve.h"
@@ -174,21 +175,6 @@ bool uncross(const Pattern& pattern, const BorderPlan& plan, const LevelBorders&
     return changed;
 }
 
-/// Disjoint sets whose representative is their smallest member.
-struct Sets {
-    std::vector<int> parent;
-    explicit Sets(int n) : parent(n) { std::iota(parent.begin(), parent.end(), 0); }
-    int find(int i) {
-        while (parent[i] != i)
-            i = parent[i] = parent[parent[i]];
-        return i;
-    }
-    void join(int a, int b) {
-        a = find(a), b = find(b);
-        parent[std::max(a, b)] = std::min(a, b);
-    }
-};
-
 std::vector<int> walked(const std::vector<int>& points, bool backward) {
     return backward ? std::vector<int>(points.rbegin(), points.rend()) : points;
 }
@@ -227,9 +213,9 @@ std::vector<int> border_offsets(const LevelBorders& borders) {
 }
 
 /// The node every border point becomes once all seams are closed.
-Sets closed_nodes(const BorderPlan& plan, const LevelBorders& borders) {
+DisjointSets closed_nodes(const BorderPlan& plan, const LevelBorders& borders) {
     const std::vector<int> offset = border_offsets(borders);
-    Sets nodes(offset.back());
+    DisjointSets nodes(offset.back());
     for (const auto& seam : plan.seams)
         for (const auto& [a, b] : stitches_of(sewn_segments(plan, seam, borders, offset)))
             nodes.join(a, b);
@@ -240,13 +226,13 @@ Sets closed_nodes(const BorderPlan& plan, const LevelBorders& borders) {
 /// segments where a segment's ends would become one node, or two segments one edge that no seam joins.
 bool keep_open(const BorderPlan& plan, const LevelBorders& borders, int level, LeastCounts& least) {
     const int enough = 4; // segments; what still coincides then is drawn so
-    Sets nodes = closed_nodes(plan, borders);
+    DisjointSets nodes = closed_nodes(plan, borders);
     const std::vector<int> offset = border_offsets(borders);
     std::vector<int> first_segment(plan.intervals.size(), 0); // all segments of all intervals, numbered
     int segments = 0;
     for (std::size_t i = 0; i < plan.intervals.size(); ++i)
         first_segment[i] = segments, segments += int(borders.of_interval[i].size()) - 1;
-    Sets sewn(segments);
+    DisjointSets sewn(segments);
     for (const auto& seam : plan.seams)
         for (const SewnIntervals& s : seam) {
             const int n = plan.count(plan.intervals[s.a].group, level);
@@ -286,7 +272,7 @@ bool keep_open(const BorderPlan& plan, const LevelBorders& borders, int level, L
 /// Inner edges between two border points can coincide with other edges, or vanish, once seams close: they are
 /// split at their middle.
 void split_chords(const BorderPlan& plan, const LevelBorders& borders, std::vector<PlanarMesh>& meshes) {
-    Sets nodes = closed_nodes(plan, borders);
+    DisjointSets nodes = closed_nodes(plan, borders);
     const std::vector<int> offset = border_offsets(borders);
     struct Chord {
         int panel, a, b;

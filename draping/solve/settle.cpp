@@ -287,9 +287,9 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
             }
             t *= 0.5;
         }
-        gained = accepted && predicted > 0 ? actual / predicted : 0;
+        const double ratio = predicted > 0 ? actual / predicted : 0;
+        gained = accepted ? ratio : 0;
         if (radius > 0) {
-            const double ratio = predicted > 0 ? actual / predicted : 0;
             if (!accepted || t < feasible || ratio < 0.25)
                 radius *= 0.4;
             else if (ratio > 0.75 && boundary)

@@ -10,6 +10,7 @@
 #include "draping/solve/settle.h"
 #include "draping/where.h"
 #include "geometry/memory.h"
+#include "geometry/simplify.h"
 
 #include <algorithm>
 #include <chrono>
@@ -32,6 +33,8 @@ constexpr double contact_share = 0.06;   // of the edge length: contact distance
 constexpr double barrier_stiffness = 1e7; // Pa/m for a cloth of 0.15 kg/m2 at a distance of half a millimetre
 constexpr double cloth_stiffness = 0.1;   // of the barrier, between cloth and cloth, which press lightly
 constexpr double sewing_softness = 0.1;   // of the barrier while seams are pulled shut, which takes little force
+constexpr double body_edge_share = 0.8;  // of the edge length: mean edge of the body on levels that are not the last
+constexpr double body_error_share = 0.5; // of their contact distance: by which it may be moved
 constexpr double floor_share = 0.1;      // of the contact distance that is never entered
 constexpr double grow_distance = 2e-3;   // m, contact distance while the body grows back
 constexpr double grow_share = 0.5;       // of the way to the cloth that the body takes at once, lest it get stuck there
@@ -83,7 +86,7 @@ double mean_gap(const Garment& g, const Points& x) {
 /// One drape on its way: what the stages share.
 struct Run {
     const Staging& staging;
-    const TriMesh& body;
+    const TriMesh& avatar;
     const PanelFabrics& fabrics;
     const DrapeOptions& options;
     DrapeResult result = {};
@@ -100,6 +103,7 @@ struct Run {
     std::string stage = {};
     int level = 0;
 
+    TriMesh body = {};         ///< that the level at work touches, see choose_body()
     Garment garment = {};      ///< of the level at work, closed
     std::vector<int> joined = {}; ///< its node of every one of the open garment, on the coarsest level
     Points x = {};             ///< its nodes
@@ -205,6 +209,14 @@ struct Run {
         return c;
     }
 };
+
+/// A level touches the body that it can tell from the avatar: the last the avatar itself, the others one of triangles
+/// like theirs.
+void choose_body(Run& run) {
+    run.body = run.last_level() ? run.avatar
+                                : simplified(run.avatar, body_edge_share * run.edge_length(),
+                                             body_error_share * run.contact_options().body.distance);
+}
 
 /// Hooks with no more than twice the garment's weight in all, or what its open seams pull with.
 std::vector<HookSpring> hooks_on(const Run& run, const Garment& g, const std::vector<std::string>& labels,
@@ -758,7 +770,7 @@ void prove(Run& run) {
                                 100 * drop, run.carried_at[label]);
     }
     if (run.result.status != DrapeStatus::converged) return;
-    const IntersectionCount n = count_intersections(node_triangles(run.garment), run.x, run.body, run.garment.stitches);
+    const IntersectionCount n = count_intersections(node_triangles(run.garment), run.x, run.avatar, run.garment.stitches);
     if (n.cloth_avatar + n.cloth_cloth == 0) return;
     run.result.status = DrapeStatus::stalled;
     run.result.where = text("%d triangle pairs of cloth and body and %d of cloth and cloth cross", n.cloth_avatar,
@@ -768,7 +780,7 @@ void prove(Run& run) {
 }
 
 void note_landmarks(Run& run) {
-    const Neckline neckline = find_neckline(run.staging.levels[run.level], run.garment, run.x, run.body);
+    const Neckline neckline = find_neckline(run.staging.levels[run.level], run.garment, run.x, run.avatar);
     run.result.landmarks = find_landmarks(run.staging.levels[run.level], run.garment, run.x, neckline);
     if (run.open || run.stopped) return;
     const std::vector<std::string> all = misplaced(run.result.landmarks, neckline);
@@ -781,7 +793,7 @@ void decide(Run& run) {
     const std::map<std::string, double> now = label_heights(run.garment, run.x, all_hooked(run));
     for (HookFacts& h : run.facts.hooks) h.end = now.at(h.label);
     for (const LevelReport& level : run.result.levels) run.facts.edge_lengths.push_back(level.edge_length);
-    const std::vector<std::string> all = decisions(run.facts, run.garment, run.x, run.fabrics, run.body);
+    const std::vector<std::string> all = decisions(run.facts, run.garment, run.x, run.fabrics, run.avatar);
     run.result.decisions.insert(run.result.decisions.end(), all.begin(), all.end());
 }
 
@@ -801,11 +813,13 @@ bool start_again(Run& run) {
     run.x = run.options.from;
     run.facts.restarted = true;
     run.result.levels.push_back({run.edge_length(), int(closed.uv.size()), 0, 0, 0});
+    choose_body(run);
     if (run.fits_memory(run.level)) settle_level(run);
     return true;
 }
 
 void sew_and_drape(Run& run) {
+    choose_body(run);
     lay(run);
     choose_hooks(run);
     sew_coarsest(run);
@@ -813,6 +827,7 @@ void sew_and_drape(Run& run) {
     settle_level(run);
     while (!run.last_level() && !run.stopped && run.fits_memory(run.level + 1, run.level)) {
         ++run.level;
+        choose_body(run);
         refine(run);
         settle_level(run);
     }
@@ -833,7 +848,7 @@ const char* to_string(DrapeStatus s) {
 
 DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabrics& fabrics,
                   const DrapeOptions& options) {
-    Run run{.staging = staging, .body = avatar.body, .fabrics = fabrics, .options = options};
+    Run run{.staging = staging, .avatar = avatar.body, .fabrics = fabrics, .options = options};
     run.result.residual = std::numeric_limits<double>::infinity();
     run.result.tolerance = options.tolerance;
     run.result.friction = options.friction;

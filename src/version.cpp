@@ -9,6 +9,7 @@
 #include <assimp/version.h>
 #include <cholmod.h>
 #include <embree3/rtcore_config.h>
+#include <meshoptimizer.h>
 #include <nlohmann/json.hpp>
 #include <tbb/version.h>
 
@@ -28,6 +29,8 @@ std::string version_text() {
            "\noneTBB " + std::to_string(TBB_VERSION_MAJOR) + '.' + std::to_string(TBB_VERSION_MINOR) +
            "\nassimp " +
            dotted(int(aiGetVersionMajor()), int(aiGetVersionMinor()), int(aiGetVersionPatch())) +
+           "\nmeshoptimizer " +
+           dotted(MESHOPTIMIZER_VERSION / 1000, MESHOPTIMIZER_VERSION / 10 % 100, MESHOPTIMIZER_VERSION % 10) +
            "\nEmbree " RTC_VERSION_STRING "\nnlohmann JSON " +
            dotted(NLOHMANN_JSON_VERSION_MAJOR, NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH) +
            "\nCLI11 " CLI11_VERSION;

@@ -166,7 +166,10 @@ bool SupernodalCholesky::eliminate(int s, Stack& stack, bool in_subtree) {
     int failed = 0;
     spotrf_("L", &wide, own.data(), &tall, &failed, 1);
     if (failed != 0) return false;
-    if (below == 0) return true;
+    if (below == 0) { // a root: there may be others
+        stack.top = bottom;
+        return true;
+    }
     float* lower = own.data() + wide;
     cblas_strsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, below, wide, 1, own.data(), tall,
                 lower, tall);

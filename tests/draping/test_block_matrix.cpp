@@ -140,6 +140,31 @@ TEST_CASE("a preconditioner solves as the exact factor does, with the same bits 
     }
 }
 
+TEST_CASE("a matrix of several pieces is factored like any other") {
+    for (const int pieces : {2, 3, 7, 30}) {
+        const int side = 25, points = pieces * side * side;
+        std::vector<std::pair<int, int>> pairs;
+        for (int piece = 0; piece < pieces; ++piece)
+            for (const auto& [j, i] : grid(side)) pairs.emplace_back(piece * side * side + j, piece * side * side + i);
+        BlockMatrix a(points, pairs);
+        for (const auto& [j, i] : pairs) {
+            a.add_off_diagonal(j, a.find(i, j), -Mat3::Identity());
+            a.add_diagonal(i, Mat3::Identity());
+            a.add_diagonal(j, Mat3::Identity());
+        }
+        a.add_to_diagonal(Eigen::VectorXd::Constant(3 * points, 0.1));
+        Cholesky cholesky;
+        cholesky.analyse(a);
+        REQUIRE(cholesky.factorise(a));
+        REQUIRE(cholesky.factorise_preconditioner(a));
+        const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(3 * points, -1, 3);
+        Eigen::VectorXd exact, fast;
+        cholesky.solve(b, exact);
+        cholesky.precondition(b, fast);
+        CHECK((fast - exact).norm() < 1e-4 * exact.norm());
+    }
+}
+
 TEST_CASE("a matrix too stiff for single precision still has a positive definite preconditioner") {
     const int points = 400;
     BlockMatrix a(points, chain(points)); // stiff springs, held in their place by almost nothing

@@ -30,6 +30,7 @@ const std::map<std::string, Strings> doors = {
     {"nlopt", {}},
     {"assimp/", {"io/read_avatar.cpp", "src/version.cpp"}},
     {"embree3/", {"io/preview.cpp", "src/version.cpp"}},
+    {"meshoptimizer", {"geometry/simplify.cpp", "src/version.cpp"}},
     {"tbb/", {"geometry/parallel.cpp", "src/version.cpp"}},
     {"oneapi/tbb", {}},
 };

@@ -40,6 +40,10 @@ constexpr double grow_distance = 2e-3;   // m, contact distance while the body g
 constexpr double grow_share = 0.5;       // of the way to the cloth that the body takes at once, lest it get stuck there
 constexpr double soft_limit = 0.7;    // turn of the strain limits' barrier that cloth can meet from beyond them
 constexpr double hard_limit = 0.9;    // and the one to end with, hardened further where the cloth needs it
+constexpr double gaping = 0.2;           // m, a gap from which cloth hangs by nothing
+constexpr double hanging_step = 0.03;    // m, an iteration's longest motion of cloth that hangs down
+constexpr int hanging_iterations = 400;  // at most, each of
+constexpr int most_hangings = 3;         // times that it does
 constexpr double slid = 0.10;            // m below its place at which a held edge counts as slid off
 constexpr double coarse_compression = 0.2; // of the fabric's, on levels that are not the last
 constexpr double coarse_residual = 10;    // to which levels that are not the last are settled
@@ -402,9 +406,15 @@ struct Start {
     PlacedClear placed;
 };
 
+/// How seams are closed.
+struct Sewing {
+    bool self = true;        ///< with contact between panels
+    std::vector<char> waits; ///< by seam, or empty: waits until the others are closed and the cloth hangs
+};
+
 struct Sewn {
     Start start;
-    bool self = true;        ///< with contact between panels
+    Sewing way;
     Points x;                ///< nodes of the open garment
     double gap = 0;          ///< m, the widest that is left
     int crossings = 0;       ///< pairs of triangles of the closed garment
@@ -461,21 +471,64 @@ Start place(const Run& run, double lift) {
     return {lift, place_clear(run.staging.levels[0].garment, lifted, run.body, o)};
 }
 
-Sewn sew_open(Run& run, const Start& start, bool self) {
+/// The seams that are open and have the body in their way; empty when there are none, or no others.
+std::vector<char> blocked_seams(const Run& run, const Points& x) {
     const Garment& open = run.staging.levels[0].garment;
-    Sewn sewn{start, self, start.placed.x};
+    const double closed = forced_share * run.edge_length();
+    const std::vector<double> through = seams_through_body(open, x, run.body);
+    std::vector<char> blocked(through.size(), 0);
+    for (const Stitch& s : open.stitches)
+        if (through[s.seam] > 0 && stitch_gap(s, x) > closed) blocked[s.seam] = 1;
+    const auto count = std::size_t(std::count(blocked.begin(), blocked.end(), 1));
+    return count == 0 || count == blocked.size() ? std::vector<char>() : blocked;
+}
+
+/// Lets what is sewn hang down.
+void hang(Run& run, ClothProblem& problem, Points& x, Cholesky& factor) {
+    SettleOptions o;
+    o.tolerance = 1;
+    o.max_step = hanging_step;
+    o.max_iterations = hanging_iterations;
+    o.exact_below = 0;
+    problem.gravity = run.options.gravity;
+    run.settle_some(problem, x, factor, o);
+    problem.gravity = 0;
+}
+
+Sewn sew_open(Run& run, const Start& start, const Sewing& way) {
+    const Garment& open = run.staging.levels[0].garment;
+    Sewn sewn{start, way, start.placed.x};
     ContactOptions contact = run.contact_options();
-    contact.self = self;
+    contact.self = way.self;
     contact.body.stiffness *= sewing_softness;
     contact.cloth.stiffness *= sewing_softness;
     ClothProblem problem(open, run.fabrics, run.body, contact);
     problem.sheet().softness = 1.0 / 16;
-    for (const Stitch& s : open.stitches)
-        problem.stitches.push_back({s.a, s.b, s.r, seam_stiffness * s.length, seam_pull * s.length});
     if (start.lift == 0) problem.hooks = hooks_on(run, open, all_hooked(run), problem);
     for (const auto& [node, place] : pinned_places(run.staging, 0, open)) problem.pin(node);
     Cholesky factor;
-    sewn.gap = close_open_seams(run, open, problem, sewn.x, factor);
+    const auto close = [&](const std::vector<char>& waits) {
+        Garment some = open;
+        some.stitches.clear();
+        problem.stitches.clear();
+        for (const Stitch& s : open.stitches) {
+            const bool pulls = waits.empty() || !waits[s.seam];
+            if (pulls) some.stitches.push_back(s);
+            problem.stitches.push_back({s.a, s.b, s.r, pulls * seam_stiffness * s.length, pulls * seam_pull * s.length});
+        }
+        sewn.gap = close_open_seams(run, some, problem, sewn.x, factor);
+    };
+    if (!way.waits.empty()) {
+        close(way.waits);
+        // What folded on its way down keeps layers apart; it falls into place when they are pulled meanwhile.
+        for (int k = 0; k < most_hangings && sewn.gap < gaping && !run.stopped; ++k) {
+            hang(run, problem, sewn.x, factor);
+            close({});
+            if (sewn.gap < forced_share * run.edge_length()) break;
+        }
+    } else {
+        close({});
+    }
     sewn.open = sewn.gap >= forced_share * run.edge_length();
     if (sewn.open) note_open_seam(run, problem, sewn);
     return sewn;
@@ -497,10 +550,14 @@ void sew_coarsest(Run& run) {
     run.garment = close_seams(staged.garment, &run.joined);
     Sewn sewn;
     const auto try_from = [&](const Start& from) {
-        for (const bool self : {true, false}) {
-            Sewn next = sew_open(run, from, self);
+        std::vector<Sewing> ways{{true, {}}, {false, {}}};
+        for (std::size_t w = 0; w < ways.size(); ++w) {
+            Sewn next = sew_open(run, from, ways[w]);
+            if (w == 0 && next.open)
+                if (const std::vector<char> blocked = blocked_seams(run, next.x); !blocked.empty())
+                    ways.insert(ways.begin() + 1, {true, blocked});
             next.crossings = crossings_when_joined(run, next.x);
-            const auto badness = [](const Sewn& s) { return std::tie(s.open, s.crossings, s.gap); };
+            const auto badness = [](const Sewn& s) { return std::tuple(s.open, s.open ? 0 : s.crossings, s.gap); };
             if (sewn.x.empty() || badness(next) < badness(sewn)) sewn = std::move(next);
             if (run.stopped || (!sewn.open && sewn.crossings == 0)) return;
         }
@@ -522,7 +579,10 @@ void sew_coarsest(Run& run) {
         run.result.where = sewn.where;
         close_what_is_closed(run, staged.garment, sewn.x);
     } else if (!run.stopped) {
-        if (!sewn.self && sewn.crossings == 0)
+        if (!sewn.way.waits.empty())
+            run.result.decisions.push_back("seams with the body in their way were sewn when the others were closed and the cloth "
+                                           "hung down: all at once could not close");
+        if (!sewn.way.self && sewn.crossings == 0)
             run.result.decisions.push_back("cloth passed through itself while seams closed: with contact "
                                            "between panels a seam could not close; the sewn garment does "
                                            "not cross itself (0 pairs)");

@@ -28,7 +28,7 @@ struct DrapeOptions {
     double clearance = 0.5e-3;      ///< m, distance from the body below which contact acts
     double friction = -1;           ///< Coulomb coefficient on the body; negative: the fabric's
     double gravity = 9.81;          ///< m/s2, along -y
-    int max_iterations = 2000;      ///< Newton iterations on all levels together
+    int max_iterations = 5000;      ///< Newton iterations on all levels together
     double max_seconds = 1e9;       ///< wall time after which the state reached is returned with status limit
     double max_memory = 1e18;       ///< bytes of the process; the same happens when they or the next level come near
     std::vector<std::string> hold;  ///< edges whose hooks stay on to the end: words of labels_called()

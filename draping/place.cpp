@@ -233,20 +233,24 @@ bool find_push(const Placing& p, PlacedPiece& piece, const Vec3& axis) {
     return false;
 }
 
+/// Whether a thread passes through the body once the garment is moved.
+bool passes(const Placing& p, const Stitch& s, const Vec3& move) {
+    const Vec3 a = p.x[s.a] + move, b = seam_point(s, p.x) + move;
+    Box thread;
+    thread.extend(a);
+    thread.extend(b);
+    bool through = false;
+    p.body_tree.overlapping(thread, [&](int t) {
+        through = through || pierces(a, b, corners_of(p.body.points, p.body.triangles[t]));
+    });
+    return through;
+}
+
 /// Metres of open seam whose threads pass through the body once the garment is moved.
 double blocked_seam(const Placing& p, const Vec3& move) {
     double blocked = 0;
-    for (const Stitch& s : p.garment.stitches) {
-        const Vec3 a = p.x[s.a] + move, b = seam_point(s, p.x) + move;
-        Box thread;
-        thread.extend(a);
-        thread.extend(b);
-        bool through = false;
-        p.body_tree.overlapping(thread, [&](int t) {
-            through = through || pierces(a, b, corners_of(p.body.points, p.body.triangles[t]));
-        });
-        if (through) blocked += s.length;
-    }
+    for (const Stitch& s : p.garment.stitches)
+        if (passes(p, s, move)) blocked += s.length;
     return blocked;
 }
 
@@ -265,6 +269,24 @@ double free_height(const Garment& garment, const Points& x, const TriMesh& body)
             best = height;
         }
     return best;
+}
+
+std::vector<double> seams_through_body(const Garment& garment, const Points& x, const TriMesh& body) {
+    const PlaceOptions none;
+    const Placing p{.garment = garment,
+                    .x = x,
+                    .body = body,
+                    .options = none,
+                    .body_tree = Bvh(triangle_boxes(body.points, body.triangles, 0))};
+    std::vector<double> share, length;
+    for (const Stitch& s : garment.stitches) {
+        share.resize(std::max(share.size(), std::size_t(s.seam + 1)), 0.0);
+        length.resize(share.size(), 0.0);
+        length[s.seam] += s.length;
+        if (passes(p, s, Vec3::Zero())) share[s.seam] += s.length;
+    }
+    for (std::size_t k = 0; k < share.size(); ++k) share[k] /= std::max(length[k], 1e-12);
+    return share;
 }
 
 PlacedClear place_clear(const Garment& garment, const Points& x, const TriMesh& body,

@@ -37,6 +37,9 @@ struct PlacedClear {
 PlacedClear place_clear(const Garment& garment, const Points& x, const TriMesh& body,
                         const PlaceOptions& options = {});
 
+/// Of every seam, the share whose threads pass through the body.
+std::vector<double> seams_through_body(const Garment& garment, const Points& x, const TriMesh& body);
+
 /// How far, in metres, the garment as a whole should be moved up (or, negative, down), within 20 cm, that
 /// fewer threads of its open seams pass through the body: shoulder seams that must close above the shoulder,
 /// inner leg seams that must close below the crotch. 0 where moving frees less than two metres of seam per

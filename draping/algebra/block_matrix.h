@@ -5,6 +5,7 @@
 
 #include "geometry/types.h"
 
+#include <cassert>
 #include <utility>
 
 namespace toile {
@@ -27,6 +28,7 @@ public:
 
     /// Adds `a` to block (i, j), i > j, at `slot` = find(i, j).
     void add_off_diagonal(int j, int slot, const Mat3& a) {
+        assert(slot >= 0); // the pattern has the block
         for (int c = 0; c < 3; ++c) {
             double* column = column_data(j, slot, c);
             for (int r = 0; r < 3; ++r) column[r] += a(r, c);

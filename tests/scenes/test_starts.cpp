@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Real patterns whose files put panels through the body.
+// Patterns whose files put panels through the body, or on the wrong side of an arm.
 #include "draping/inspect.h"
 #include "src/pipeline.h"
+#include "tests/support/sound.h"
+#include "tests/support/temp_folder.h"
 #include "tests/support/test_data.h"
 
 #include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <fstream>
 
 using namespace toile;
 using namespace toile::test;
@@ -39,4 +44,82 @@ TEST_CASE("skirts whose panels start in the body drape like others") {
         CHECK(i.seam_gap_max == 0);
         CHECK(i.pieces == 1);
     }
+}
+
+namespace {
+
+using nlohmann::json;
+
+/// Three quarters of a ring, open at the top, whose inner edge (3) is `girth` cm long; edges 0 and 2 are its straight ends.
+json three_quarter_ring(double girth, double width) {
+    const double r = girth / (1.5 * EIGEN_PI), s = r / std::sqrt(2), t = (r + width) / std::sqrt(2);
+    const auto arc = [](double radius, int right) { return json{{"type", "circle"}, {"params", {radius, 1, right}}}; };
+    return {{"vertices", {{-s, s}, {-t, t}, {t, t}, {s, s}}},
+            {"edges",
+             {{{"endpoints", {0, 1}}},
+              {{"endpoints", {1, 2}}, {"curvature", arc(r + width, 1)}},
+              {{"endpoints", {2, 3}}},
+              {{"endpoints", {3, 0}}, {"curvature", arc(r, 0)}}}}};
+}
+
+json band(double length, double height) {
+    return {{"vertices", {{-length / 2, 0}, {length / 2, 0}, {length / 2, height}, {-length / 2, height}}},
+            {"edges",
+             {{{"endpoints", {0, 1}}},
+              {{"endpoints", {1, 2}}},
+              {{"endpoints", {2, 3}}, {"label", "lower_interface"}},
+              {{"endpoints", {3, 0}}}}}};
+}
+
+json at(json panel, double y, double z) {
+    panel["translation"] = {0, y, z};
+    panel["rotation"] = {0, 0, 0};
+    return panel;
+}
+
+/// The panel with its left on the right, as a back is beside its front.
+json mirrored(json panel) {
+    for (json& v : panel["vertices"]) v[0] = -v[0].get<double>();
+    for (json& e : panel["edges"])
+        if (e.contains("curvature")) e["curvature"]["params"][2] = 1 - e["curvature"]["params"][2].get<int>();
+    return panel;
+}
+
+/// Front and back of a full skirt on a waistband, both flat, so that the arms lie between the sides that belong together.
+json full_skirt() {
+    const json ring = three_quarter_ring(36.5, 45), waist = band(36.5, 4);
+    const auto end = [](const char* panel, int edge) { return json{{"panel", panel}, {"edge", edge}}; };
+    const auto seam = [](const json& a, const json& b) { return json::array({a, b}); };
+    return {{"pattern",
+             {{"panels",
+               {{"skirt_front", at(ring, 91, 25)},
+                {"skirt_back", at(mirrored(ring), 91, -25)},
+                {"band_front", at(waist, 100, 20)},
+                {"band_back", at(mirrored(waist), 100, -20)}}},
+              {"stitches",
+               {seam(end("band_front", 1), end("band_back", 3)), seam(end("band_front", 3), end("band_back", 1)),
+                seam(end("band_front", 0), end("skirt_front", 3)), seam(end("band_back", 0), end("skirt_back", 3)),
+                seam(end("skirt_front", 0), end("skirt_back", 2)), seam(end("skirt_front", 2), end("skirt_back", 0))}}}},
+            {"properties",
+             {{"units_in_meter", 100}, {"curvature_coords", "relative"}, {"normalized_edge_loops", true}}}};
+}
+
+} // namespace
+
+TEST_CASE("a full skirt whose sides start on either side of the arms is hung before they are sewn") {
+    const TempFolder folder;
+    DrapeJob job;
+    job.pattern = folder / "skirt.json";
+    std::ofstream(job.pattern) << full_skirt();
+    job.fabric = "jersey";
+    job.edge_length = 0.03;
+    job.garments = {folder / "a.obj"};
+    const DrapeOutcome drape = run_job(job);
+    INFO(drape.result.where);
+    CHECK(drape.result.status == DrapeStatus::converged);
+    const auto hung = [](const std::string& sentence) { return sentence.find("hung down") != std::string::npos; };
+    CHECK(std::any_of(drape.result.decisions.begin(), drape.result.decisions.end(), hung));
+    const ReadGarment g = read_garment(job.garments[0]);
+    // The insides of deep folds look at the body.
+    check_sound(g, drape.body, PanelFabrics(g.garment.panel_names.size(), fabric_preset("jersey")), 0.1, 0.7);
 }

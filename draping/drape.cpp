@@ -819,15 +819,36 @@ void settle_level(Run& run) {
     run.result.seconds.push_back({text("settle %g mm", 1e3 * run.edge_length()), s});
 }
 
+/// The largest strain that a fabric of the garment allows; a limit of 0 is none.
+double most_stretch(const Run& run) {
+    double most = 0;
+    for (const Fabric& f : run.fabrics)
+        for (const double limit : {f.limit_warp, f.limit_weft})
+            most = std::max(most, limit > 0 ? limit : std::numeric_limits<double>::infinity());
+    return most;
+}
+
+/// What a tape measure reads at most round the torso between two heights.
+double widest_girth(const TriMesh& body, double low, double high) {
+    double widest = 0;
+    for (double y = low; y <= high; y += 0.01) widest = std::max(widest, torso_girth(body, y));
+    return widest;
+}
+
 /// What the promises that a residual does not show have come to.
 void prove(Run& run) {
     if (run.stopped || run.result.status == DrapeStatus::too_small) return; // what is too small slides as well
     for (const auto& [label, height] : label_heights(run.garment, run.x, all_hooked(run))) {
         const double drop = run.carried_at[label] - height;
         if (drop < slid) continue;
-        run.result.status = DrapeStatus::slid_off;
+        const double longest = (1 + most_stretch(run)) * label_length(run.garment, label);
+        const double widest = widest_girth(run.avatar, height, run.carried_at[label]);
+        run.result.status = longest < widest - tight ? DrapeStatus::too_small : DrapeStatus::slid_off;
         run.result.where = text("edges labelled \"%s\" slid %.0f cm down from their place at %.2f m", label.c_str(),
                                 100 * drop, run.carried_at[label]);
+        if (run.result.status == DrapeStatus::too_small)
+            run.result.where += text(", over a girth of %.1f cm, which they do not pass: %.1f cm are missing", 100 * widest,
+                                     100 * (widest - longest));
     }
     if (run.result.status != DrapeStatus::converged) return;
     const IntersectionCount n = count_intersections(node_triangles(run.garment), run.x, run.avatar, run.garment.stitches);

@@ -56,6 +56,14 @@ std::map<std::string, double> label_heights(const Garment& garment, const Points
     return mean;
 }
 
+double label_length(const Garment& garment, const std::string& label) {
+    double sum = 0;
+    for (const BorderLine& b : garment.borders)
+        for (std::size_t k = 1; b.label == label && k < b.vertices.size(); ++k)
+            sum += (garment.uv[b.vertices[k]] - garment.uv[b.vertices[k - 1]]).norm();
+    return sum;
+}
+
 std::vector<HookSpring> make_hooks(const Garment& garment, const std::map<std::string, double>& heights,
                                    double strength) {
     std::vector<HookSpring> springs;

@@ -27,6 +27,9 @@ std::vector<std::string> labels_of(const Garment& garment);
 std::map<std::string, double> label_heights(const Garment& garment, const Points& x,
                                             const std::vector<std::string>& labels);
 
+/// Length, m, of the edges of a label in all, as they were cut.
+double label_length(const Garment& garment, const std::string& label);
+
 /// Hooks that hold the heights of the labelled edges with no more than `strength` newton in all.
 std::vector<HookSpring> make_hooks(const Garment& garment, const std::map<std::string, double>& heights,
                                    double strength);

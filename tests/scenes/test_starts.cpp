@@ -46,6 +46,22 @@ TEST_CASE("skirts whose panels start in the body drape like others") {
     }
 }
 
+TEST_CASE("trousers that do not fit are too small and not slid off, wherever their waist ends") {
+    const auto pattern = test_data("garmentcode/rand_007_specification.json");
+    const auto avatar = test_data("bodies/mean_all.obj");
+    if (!pattern || !avatar) return;
+    for (const double edge_length : {0.02, 0.03}) {
+        DrapeJob job;
+        job.pattern = *pattern;
+        job.avatar = *avatar;
+        job.fabric = "poplin";
+        job.edge_length = edge_length;
+        const DrapeOutcome drape = run_job(job);
+        CHECK(drape.result.status == DrapeStatus::too_small);
+        CHECK_THAT(drape.result.where, Catch::Contains("cm are missing"));
+    }
+}
+
 namespace {
 
 using nlohmann::json;

@@ -549,23 +549,23 @@ void sew_coarsest(Run& run) {
     }
     run.garment = close_seams(staged.garment, &run.joined);
     Sewn sewn;
-    const auto try_from = [&](const Start& from) {
-        std::vector<Sewing> ways{{true, {}}, {false, {}}};
-        for (std::size_t w = 0; w < ways.size(); ++w) {
-            Sewn next = sew_open(run, from, ways[w]);
-            if (w == 0 && next.open)
-                if (const std::vector<char> blocked = blocked_seams(run, next.x); !blocked.empty())
-                    ways.insert(ways.begin() + 1, {true, blocked});
-            next.crossings = crossings_when_joined(run, next.x);
-            const auto badness = [](const Sewn& s) { return std::tuple(s.open, s.open ? 0 : s.crossings, s.gap); };
-            if (sewn.x.empty() || badness(next) < badness(sewn)) sewn = std::move(next);
-            if (run.stopped || (!sewn.open && sewn.crossings == 0)) return;
-        }
+    const auto closes = [&](const Start& from, const Sewing& way) {
+        Sewn next = sew_open(run, from, way);
+        next.crossings = crossings_when_joined(run, next.x);
+        const auto badness = [](const Sewn& s) { return std::tuple(s.open, s.open ? 0 : s.crossings, s.gap); };
+        if (sewn.x.empty() || badness(next) < badness(sewn)) sewn = std::move(next);
+        return run.stopped || (!sewn.open && sewn.crossings == 0);
     };
-    try_from(place(run, 0));
-    if (sewn.open && !run.stopped && run.staging.pins.empty())
-        if (const double lift = free_height(staged.garment, run.laid.x, run.body); lift != 0)
-            try_from(place(run, lift));
+    const Start as_filed = place(run, 0);
+    bool done = closes(as_filed, {true, {}});
+    const std::vector<char> blocked = blocked_seams(run, sewn.x);
+    done = done || closes(as_filed, {false, {}});
+    if (!done && sewn.open && run.staging.pins.empty())
+        if (const double lift = free_height(staged.garment, run.laid.x, run.body); lift != 0) {
+            const Start lifted = place(run, lift);
+            done = closes(lifted, {true, {}}) || closes(lifted, {false, {}});
+        }
+    if (!done && sewn.open && !blocked.empty()) closes(as_filed, {true, blocked});
     run.x = merge(run.garment, run.joined, sewn.x);
     if (sewn.start.lift != 0)
         run.result.decisions.push_back(

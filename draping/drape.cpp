@@ -475,10 +475,10 @@ Start place(const Run& run, double lift) {
 std::vector<char> blocked_seams(const Run& run, const Points& x) {
     const Garment& open = run.staging.levels[0].garment;
     const double closed = forced_share * run.edge_length();
-    const std::vector<double> through = seams_through_body(open, x, run.body);
+    const std::vector<char> through = seams_through_body(open, x, run.body);
     std::vector<char> blocked(through.size(), 0);
     for (const Stitch& s : open.stitches)
-        if (through[s.seam] > 0 && stitch_gap(s, x) > closed) blocked[s.seam] = 1;
+        if (through[s.seam] && stitch_gap(s, x) > closed) blocked[s.seam] = 1;
     const auto count = std::size_t(std::count(blocked.begin(), blocked.end(), 1));
     return count == 0 || count == blocked.size() ? std::vector<char>() : blocked;
 }
@@ -516,19 +516,16 @@ Sewn sew_open(Run& run, const Start& start, const Sewing& way) {
             if (pulls) some.stitches.push_back(s);
             problem.stitches.push_back({s.a, s.b, s.r, pulls * seam_stiffness * s.length, pulls * seam_pull * s.length});
         }
-        sewn.gap = close_open_seams(run, some, problem, sewn.x, factor);
+        return close_open_seams(run, some, problem, sewn.x, factor);
     };
-    if (!way.waits.empty()) {
-        close(way.waits);
-        // What folded on its way down keeps layers apart; it falls into place when they are pulled meanwhile.
-        for (int k = 0; k < most_hangings && sewn.gap < gaping && !run.stopped; ++k) {
-            hang(run, problem, sewn.x, factor);
-            close({});
-            if (sewn.gap < forced_share * run.edge_length()) break;
-        }
-    } else {
-        close({});
+    double gap = close(way.waits);
+    // What folded on its way down keeps layers apart; it falls into place when they are pulled meanwhile.
+    for (int k = 0; !way.waits.empty() && k < most_hangings && gap < gaping && !run.stopped; ++k) {
+        hang(run, problem, sewn.x, factor);
+        gap = close({});
+        if (gap < forced_share * run.edge_length()) break;
     }
+    sewn.gap = seam_gap_max(open, sewn.x); // of those that wait as well, if it was stopped before their turn
     sewn.open = sewn.gap >= forced_share * run.edge_length();
     if (sewn.open) note_open_seam(run, problem, sewn);
     return sewn;
@@ -558,7 +555,7 @@ void sew_coarsest(Run& run) {
     };
     const Start as_filed = place(run, 0);
     bool done = closes(as_filed, {true, {}});
-    const std::vector<char> blocked = blocked_seams(run, sewn.x);
+    const std::vector<char> blocked = sewn.open ? blocked_seams(run, sewn.x) : std::vector<char>();
     done = done || closes(as_filed, {false, {}});
     if (!done && sewn.open && run.staging.pins.empty())
         if (const double lift = free_height(staged.garment, run.laid.x, run.body); lift != 0) {

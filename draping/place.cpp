@@ -271,22 +271,19 @@ double free_height(const Garment& garment, const Points& x, const TriMesh& body)
     return best;
 }
 
-std::vector<double> seams_through_body(const Garment& garment, const Points& x, const TriMesh& body) {
+std::vector<char> seams_through_body(const Garment& garment, const Points& x, const TriMesh& body) {
     const PlaceOptions none;
     const Placing p{.garment = garment,
                     .x = x,
                     .body = body,
                     .options = none,
                     .body_tree = Bvh(triangle_boxes(body.points, body.triangles, 0))};
-    std::vector<double> share, length;
+    std::vector<char> through;
     for (const Stitch& s : garment.stitches) {
-        share.resize(std::max(share.size(), std::size_t(s.seam + 1)), 0.0);
-        length.resize(share.size(), 0.0);
-        length[s.seam] += s.length;
-        if (passes(p, s, Vec3::Zero())) share[s.seam] += s.length;
+        through.resize(std::max(through.size(), std::size_t(s.seam + 1)), 0);
+        if (passes(p, s, Vec3::Zero())) through[s.seam] = 1;
     }
-    for (std::size_t k = 0; k < share.size(); ++k) share[k] /= std::max(length[k], 1e-12);
-    return share;
+    return through;
 }
 
 PlacedClear place_clear(const Garment& garment, const Points& x, const TriMesh& body,

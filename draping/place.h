@@ -37,8 +37,8 @@ struct PlacedClear {
 PlacedClear place_clear(const Garment& garment, const Points& x, const TriMesh& body,
                         const PlaceOptions& options = {});
 
-/// Of every seam, the share whose threads pass through the body.
-std::vector<double> seams_through_body(const Garment& garment, const Points& x, const TriMesh& body);
+/// Of every seam, whether threads of it pass through the body.
+std::vector<char> seams_through_body(const Garment& garment, const Points& x, const TriMesh& body);
 
 /// How far, in metres, the garment as a whole should be moved up (or, negative, down), within 20 cm, that
 /// fewer threads of its open seams pass through the body: shoulder seams that must close above the shoulder,

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The examples cut to the measures of bodies of another make: quads, another topology, another pose.
 #include "io/read_avatar.h"
-#include "src/pipeline.h"
-#include "tests/support/sound.h"
+#include "tests/support/sound_drape.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_data.h"
 
@@ -50,14 +49,8 @@ TEST_CASE("the examples cut to other bodies drape on them") {
             job.avatar = *body;
             job.edge_length = 0.03;
             job.garments = {folder / "a.obj", folder / "a.glb"};
-            const DrapeOutcome drape = run_job(job);
-            INFO(drape.result.where);
-            CHECK(drape.result.status == DrapeStatus::converged);
-            for (const std::string& file : job.garments) {
-                const ReadGarment g = read_garment(file);
-                // Triangles of 30 mm are coarse for what jersey does under a slender arm.
-                check_sound(g, drape.body, PanelFabrics(g.garment.panel_names.size(), fabric_preset(fabric)), 0.12);
-            }
+            // Triangles of 30 mm are coarse for what jersey does under a slender arm.
+            const DrapeOutcome drape = drape_soundly(job, fabric, 0.12);
             for (const Landmark& l : drape.result.landmarks)
                 CHECK(std::abs(l.settled - l.placed) < 0.03);
         }

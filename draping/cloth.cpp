@@ -87,9 +87,14 @@ void ClothProblem::rest_here(const Points& x, double coefficient, bool at_rest) 
     trusted_ = at_rest;
 }
 
-void ClothProblem::limit_strain(double turn) {
+void ClothProblem::limit_strain(double turn, double tighter) {
     sheet_.limits = limits_;
-    for (StrainLimit& limit : sheet_.limits) limit.turn = turn;
+    for (StrainLimit& limit : sheet_.limits) {
+        limit.turn = turn;
+        limit.weft = 1 + (1 - tighter) * (limit.weft - 1);
+        limit.warp = 1 + (1 - tighter) * (limit.warp - 1);
+        limit.shear *= 1 - tighter;
+    }
 }
 
 void ClothProblem::renew_friction(const Points& x) {

@@ -43,8 +43,9 @@ public:
     /// friction is at once what holds it there; otherwise it follows contact slowly.
     void rest_here(const Points& x, double coefficient, bool at_rest = false);
 
-    /// Turns the strain limits on, as hard as `turn` says (see StrainLimit).
-    void limit_strain(double turn);
+    /// Turns the strain limits on, as hard as `turn` says (see StrainLimit), and `tighter` by that share than the
+    /// fabric's.
+    void limit_strain(double turn, double tighter = 0);
     /// The triangles at or beyond a limit of their fabric.
     std::vector<int> beyond_limits(const Points& x) const { return beyond_strain_limits(limits_, x); }
 

@@ -8,6 +8,7 @@
 #include "draping/lay.h"
 #include "draping/place.h"
 #include "draping/solve/settle.h"
+#include "draping/wait.h"
 #include "draping/where.h"
 #include "geometry/memory.h"
 #include "geometry/simplify.h"
@@ -17,7 +18,9 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <functional>
 #include <map>
+#include <numeric>
 #include <tuple>
 
 namespace toile {
@@ -40,10 +43,17 @@ constexpr double grow_distance = 2e-3;   // m, contact distance while the body g
 constexpr double grow_share = 0.5;       // of the way to the cloth that the body takes at once, lest it get stuck there
 constexpr double soft_limit = 0.7;    // turn of the strain limits' barrier that cloth can meet from beyond them
 constexpr double hard_limit = 0.9;    // and the one to end with, hardened further where the cloth needs it
+constexpr double hardest_limit = 0.998;  // from there on limits are not hardened but
+constexpr double least_tighter = 2.5e-4; // drawn in by such shares of theirs
+constexpr double most_tighter = 2e-3;
 constexpr double gaping = 0.2;           // m, a gap from which cloth hangs by nothing
 constexpr double hanging_step = 0.03;    // m, an iteration's longest motion of cloth that hangs down
 constexpr int hanging_iterations = 400;  // at most, each of
 constexpr int most_hangings = 3;         // times that it does
+constexpr double machine_gap = 0.1;      // of the edge length: what sewing by machine leaves behind it
+constexpr int machine_patience = 30;     // rounds that it waits for a gap to close
+constexpr int machine_stitches = 2;      // sewn at a time
+constexpr double most_pull = 30;         // times seam_pull that it grows to
 constexpr double slid = 0.10;            // m below its place at which a held edge counts as slid off
 constexpr double coarse_compression = 0.2; // of the fabric's, on levels that are not the last
 constexpr double coarse_residual = 10;    // to which levels that are not the last are settled
@@ -408,8 +418,8 @@ struct Start {
 
 /// How seams are closed.
 struct Sewing {
-    bool self = true;        ///< with contact between panels
-    std::vector<char> waits; ///< by seam, or empty: waits until the others are closed and the cloth hangs
+    bool self = true; ///< with contact between panels
+    Waiting waiting;  ///< until the other seams are closed and the cloth hangs
 };
 
 struct Sewn {
@@ -463,35 +473,102 @@ void note_pushes(Run& run, const PlacedClear& placed) {
                                             p.from_body ? "out of the body" : "clear of another panel"));
 }
 
-Start place(const Run& run, double lift) {
+Start place(const Run& run, double lift, const std::vector<bool>& outside = {}) {
     Points lifted = run.laid.x;
     for (Vec3& p : lifted) p.y() += lift;
     PlaceOptions o;
     o.fixed = pinned_panels(run);
+    o.outside = outside;
     return {lift, place_clear(run.staging.levels[0].garment, lifted, run.body, o)};
 }
 
-/// The seams that are open and have the body in their way; empty when there are none, or no others.
-std::vector<char> blocked_seams(const Run& run, const Points& x) {
-    const Garment& open = run.staging.levels[0].garment;
-    const double closed = forced_share * run.edge_length();
-    const std::vector<char> through = seams_through_body(open, x, run.body);
-    std::vector<char> blocked(through.size(), 0);
-    for (const Stitch& s : open.stitches)
-        if (through[s.seam] && stitch_gap(s, x) > closed) blocked[s.seam] = 1;
-    const auto count = std::size_t(std::count(blocked.begin(), blocked.end(), 1));
-    return count == 0 || count == blocked.size() ? std::vector<char>() : blocked;
+SettleOptions hanging_options() {
+    SettleOptions o;
+    o.max_step = hanging_step;
+    o.exact_below = 0;
+    return o;
 }
 
-/// Lets what is sewn hang down.
-void hang(Run& run, ClothProblem& problem, Points& x, Cholesky& factor) {
-    SettleOptions o;
+void start_to_pull(ClothProblem& problem, const Garment& open, int stitch) {
+    const double length = open.stitches[stitch].length;
+    problem.stitches[stitch].stiffness = seam_stiffness * length;
+    problem.stitches[stitch].cap = seam_pull * length;
+}
+
+/// Lets what is sewn hang down until the body is no longer between the sides of seams that wait.
+void hang(Run& run, const Garment& open, const Waiting& waiting, ClothProblem& problem, Points& x, Cholesky& factor) {
+    SettleOptions o = hanging_options();
     o.tolerance = 1;
-    o.max_step = hanging_step;
-    o.max_iterations = hanging_iterations;
-    o.exact_below = 0;
+    o.max_iterations = 20;
     problem.gravity = run.options.gravity;
-    run.settle_some(problem, x, factor, o);
+    for (int k = 0; k < hanging_iterations / o.max_iterations && !run.stopped; ++k) {
+        run.settle_some(problem, x, factor, o);
+        const std::vector<char> through = seams_through_body(open, x, run.body);
+        const auto in_the_way = [](char seam, char waits) { return seam && waits; };
+        if (!std::inner_product(through.begin(), through.end(), waiting.seams.begin(), false, std::logical_or(), in_the_way)) break;
+    }
+    problem.gravity = 0;
+}
+
+/// When a seam is sewn: what lies inside first, then what hangs from it, then the sides that wait until it hangs.
+int turn_of(const Garment& open, const Waiting& waiting, const Stitch& s) {
+    if (waiting.seams.empty()) return 0;
+    if (waiting.seams[s.seam]) return 2;
+    return waiting.outside[open.panel_of_vertex[s.a]] || waiting.outside[open.panel_of_vertex[s.b[0]]];
+}
+
+/// A seam that is sewn stitch by stitch.
+struct MachineSeam {
+    std::vector<int> stitches = {}; ///< of the garment, in the order of sewing
+    std::size_t sewn = 0;           ///< of them pull
+};
+
+/// Lets the next stitches of a seam pull, if what is sewn of it has closed, and pulls harder on what has not. A seam
+/// begins at an end that is closed on. Returns whether there were any.
+bool sew_on(const Run& run, const Garment& open, MachineSeam& seam, ClothProblem& problem, const Points& x) {
+    const auto gap = [&](int k) { return stitch_gap(open.stitches[k], x); };
+    if (seam.sewn == 0) {
+        if (gap(seam.stitches.back()) < gap(seam.stitches.front())) std::reverse(seam.stitches.begin(), seam.stitches.end());
+        if (gap(seam.stitches.front()) > run.edge_length()) return false;
+    }
+    const double near = machine_gap * run.edge_length();
+    bool closed = true;
+    for (std::size_t n = 0; n < seam.sewn; ++n) {
+        const int k = seam.stitches[n];
+        closed = closed && gap(k) < near;
+        if (gap(k) < 0.2 * near) continue;
+        auto& spring = problem.stitches[k];
+        spring.cap = std::min(1.2 * spring.cap, most_pull * seam_pull * open.stitches[k].length);
+        spring.stiffness = std::min(1.5 * spring.stiffness, 2e4 * spring.cap);
+    }
+    const std::size_t next = closed ? std::min(seam.sewn + machine_stitches, seam.stitches.size()) : seam.sewn;
+    const bool any = next > seam.sewn;
+    for (; seam.sewn < next; ++seam.sewn) start_to_pull(problem, open, seam.stitches[seam.sewn]);
+    return any;
+}
+
+/// Sews waiting seams as on a machine, each after the one that it follows on: sides pulled shut all along at once
+/// pinch the folds that hang between them.
+void sew_by_machine(Run& run, const Garment& open, const Waiting& waiting, ClothProblem& problem, Points& x,
+                    Cholesky& factor) {
+    std::vector<MachineSeam> seams(waiting.seams.size());
+    for (std::size_t k = 0; k < open.stitches.size(); ++k)
+        if (waiting.seams[open.stitches[k].seam]) seams[open.stitches[k].seam].stitches.push_back(int(k));
+    std::erase_if(seams, [](const MachineSeam& s) { return s.stitches.empty(); });
+    SettleOptions o = hanging_options();
+    o.tolerance = 1e-2;
+    o.max_iterations = 4;
+    o.time_step = 0.1;
+    problem.gravity = run.options.gravity;
+    for (int waited = 0; waited < machine_patience && !run.stopped; ++waited) {
+        bool all = true;
+        for (MachineSeam& s : seams) {
+            if (sew_on(run, open, s, problem, x)) waited = 0;
+            all = all && s.sewn == s.stitches.size();
+        }
+        run.settle_some(problem, x, factor, o);
+        if (all) break;
+    }
     problem.gravity = 0;
 }
 
@@ -507,22 +584,27 @@ Sewn sew_open(Run& run, const Start& start, const Sewing& way) {
     if (start.lift == 0) problem.hooks = hooks_on(run, open, all_hooked(run), problem);
     for (const auto& [node, place] : pinned_places(run.staging, 0, open)) problem.pin(node);
     Cholesky factor;
-    const auto close = [&](const std::vector<char>& waits) {
+    for (const Stitch& s : open.stitches) problem.stitches.push_back({s.a, s.b, s.r, 0, 0});
+    // What has been closed keeps what it took to close it.
+    const auto close = [&](int turn) {
         Garment some = open;
         some.stitches.clear();
-        problem.stitches.clear();
-        for (const Stitch& s : open.stitches) {
-            const bool pulls = waits.empty() || !waits[s.seam];
-            if (pulls) some.stitches.push_back(s);
-            problem.stitches.push_back({s.a, s.b, s.r, pulls * seam_stiffness * s.length, pulls * seam_pull * s.length});
+        for (std::size_t k = 0; k < open.stitches.size(); ++k) {
+            const Stitch& s = open.stitches[k];
+            const int its = turn_of(open, way.waiting, s);
+            if (its > turn) continue;
+            some.stitches.push_back(s);
+            if (its < turn || problem.stitches[k].stiffness > 0) continue;
+            start_to_pull(problem, open, int(k));
         }
         return close_open_seams(run, some, problem, sewn.x, factor);
     };
-    double gap = close(way.waits);
-    // What folded on its way down keeps layers apart; it falls into place when they are pulled meanwhile.
-    for (int k = 0; !way.waits.empty() && k < most_hangings && gap < gaping && !run.stopped; ++k) {
-        hang(run, problem, sewn.x, factor);
-        gap = close({});
+    double gap = close(0);
+    if (!way.waiting.seams.empty()) gap = close(1);
+    for (int k = 0; !way.waiting.seams.empty() && k < most_hangings && gap < gaping && !run.stopped; ++k) {
+        hang(run, open, way.waiting, problem, sewn.x, factor);
+        if (k == 0) sew_by_machine(run, open, way.waiting, problem, sewn.x, factor);
+        gap = close(2);
         if (gap < forced_share * run.edge_length()) break;
     }
     sewn.gap = seam_gap_max(open, sewn.x); // of those that wait as well, if it was stopped before their turn
@@ -555,14 +637,15 @@ void sew_coarsest(Run& run) {
     };
     const Start as_filed = place(run, 0);
     bool done = closes(as_filed, {true, {}});
-    const std::vector<char> blocked = sewn.open ? blocked_seams(run, sewn.x) : std::vector<char>();
     done = done || closes(as_filed, {false, {}});
+    const Waiting waiting = done || !sewn.open ? Waiting()
+                                               : what_waits(staged.garment, sewn.x, run.body, forced_share * run.edge_length());
     if (!done && sewn.open && run.staging.pins.empty())
         if (const double lift = free_height(staged.garment, run.laid.x, run.body); lift != 0) {
             const Start lifted = place(run, lift);
             done = closes(lifted, {true, {}}) || closes(lifted, {false, {}});
         }
-    if (!done && sewn.open && !blocked.empty()) closes(as_filed, {true, blocked});
+    if (!done && sewn.open && !waiting.seams.empty()) closes(place(run, 0, waiting.outside), {true, waiting});
     run.x = merge(run.garment, run.joined, sewn.x);
     if (sewn.start.lift != 0)
         run.result.decisions.push_back(
@@ -576,7 +659,7 @@ void sew_coarsest(Run& run) {
         run.result.where = sewn.where;
         close_what_is_closed(run, staged.garment, sewn.x);
     } else if (!run.stopped) {
-        if (!sewn.way.waits.empty())
+        if (!sewn.way.waiting.seams.empty())
             run.result.decisions.push_back("seams with the body in their way were sewn when the others were closed and the cloth "
                                            "hung down: all at once could not close");
         if (!sewn.way.self && sewn.crossings == 0)
@@ -727,6 +810,23 @@ void note_facts(Run& run, const ClothProblem& problem) {
     f.inner_gap = seam_gap_max(run.garment, run.x);
 }
 
+/// Settles on where cloth at rest is beyond its limits: these are hardened, and where the coordinates' last digits no
+/// longer tell the forces of harder ones, drawn in by what the cloth is beyond them.
+SettleResult settle_within_limits(Run& run, ClothProblem& problem, Cholesky& factor, const SettleOptions& o, SettleResult r) {
+    double turn = hard_limit;
+    const auto again = [&](double tighter) {
+        problem.limit_strain(turn, tighter);
+        r = run.settle_some(problem, run.x, factor, o);
+    };
+    const auto beyond = [&] { return !run.stopped && !problem.beyond_limits(run.x).empty(); };
+    while (beyond() && turn < hardest_limit) {
+        turn = 1 - (1 - turn) / 3;
+        again(0);
+    }
+    for (double tighter = least_tighter; beyond() && tighter < most_tighter; tighter *= 2) again(tighter);
+    return r;
+}
+
 /// Brings one level to rest: softened membrane first, whose longer steps find the lower drape.
 void settle_level(Run& run) {
     const auto start = Clock::now();
@@ -786,12 +886,7 @@ void settle_level(Run& run) {
             untangle();
         }
         r = run.settle_some(problem, run.x, factor, o);
-        // Limits are hardened only where the cloth needs it.
-        for (double room = (1 - hard_limit) / 3; last_pass && run.last_level() && room > 1e-3 && !run.stopped; room /= 3) {
-            if (problem.beyond_limits(run.x).empty()) break;
-            problem.limit_strain(1 - room);
-            r = run.settle_some(problem, run.x, factor, o);
-        }
+        if (last_pass && run.last_level()) r = settle_within_limits(run, problem, factor, o, r);
     }
     run.result.residual = r.residual;
     run.result.barrier = {contact.body.distance, contact.body.stiffness, contact.cloth.stiffness};

@@ -63,6 +63,7 @@ struct Placing {
     const PlaceOptions& options;
     std::vector<PlacedPiece> pieces = {};
     Bvh body_tree = {};
+    std::vector<int> piece_of_node = {};
     std::vector<int> group = {};             ///< of a node: nodes that stitches of no length join
     std::vector<double> reach = {};          ///< m, of a node: smallest altitude of the triangles round it
     std::vector<std::vector<int>> ring = {}; ///< groups next to a group, sorted
@@ -134,6 +135,9 @@ void collect_pieces(Placing& p) {
         for (int t : p.pieces.back().triangles) boxes.push_back(p.box(t, Vec3::Zero(), 0));
         p.pieces.back().tree = Bvh(boxes);
     }
+    p.piece_of_node.resize(p.garment.node_count);
+    for (int i = 0; i < int(p.pieces.size()); ++i)
+        for (int node : p.pieces[i].nodes) p.piece_of_node[node] = i;
 }
 
 /// Turns that the body's surface takes round a point, by where a ray upward leaves and enters it.
@@ -186,8 +190,29 @@ bool near_cloth(const Placing& p, const Piece& piece, const Vec3& push) {
     return false;
 }
 
-bool clear(const Placing& p, const Piece& piece, const Vec3& push) {
-    return !near_cloth(p, piece, push) && !near_body(p, piece, push);
+bool outside(const Placing& p, const Piece& piece) { return any_of_panels(piece, p.options.outside); }
+
+/// Whether a thread between placed pieces passes through the piece.
+bool in_threads(const Placing& p, const PlacedPiece& piece, const Vec3& push) {
+    for (const Stitch& s : p.garment.stitches) {
+        const PlacedPiece &one = p.pieces[p.piece_of_node[s.a]], &other = p.pieces[p.piece_of_node[s.b[0]]];
+        if (!one.placed || !other.placed || outside(p, one) || outside(p, other)) continue;
+        const Vec3 a = p.x[s.a] + one.push - push, b = seam_point(s, p.x) + other.push - push;
+        Box thread;
+        thread.extend(a);
+        thread.extend(b);
+        bool through = false;
+        piece.tree.overlapping(thread, [&](int k) {
+            through = through || pierces(a, b, corners_of(p.x, p.garment.nodes(piece.triangles[k])));
+        });
+        if (through) return true;
+    }
+    return false;
+}
+
+bool clear(const Placing& p, const PlacedPiece& piece, const Vec3& push) {
+    return !near_cloth(p, piece, push) && !near_body(p, piece, push) &&
+           !(outside(p, piece) && in_threads(p, piece, push));
 }
 
 /// Distance from a panel's nodes to the body; negative by how deep its deepest node lies inside.
@@ -207,9 +232,9 @@ double distance_from_body(const Placing& p, const Piece& piece) {
 bool fixed(const Placing& p, const Piece& piece) { return any_of_panels(piece, p.options.fixed); }
 
 std::vector<int> order_of_placing(const Placing& p) {
-    std::vector<std::tuple<bool, int, double>> key; // fixed ones first, then layer by layer
+    std::vector<std::tuple<bool, bool, int, double>> key; // fixed ones first, then layer by layer
     for (const Piece& piece : p.pieces)
-        key.emplace_back(!fixed(p, piece), p.garment.panel_layers[piece.panels[0]],
+        key.emplace_back(!fixed(p, piece), outside(p, piece), p.garment.panel_layers[piece.panels[0]],
                          distance_from_body(p, piece));
     std::vector<int> order(p.pieces.size());
     std::iota(order.begin(), order.end(), 0);

@@ -15,6 +15,7 @@ struct PlaceOptions {
     double step = 2e-3;       ///< m, by which pushes are tried
     double farthest = 0.6;    ///< m, of a push
     std::vector<bool> fixed;  ///< per panel: must stay; empty: none
+    std::vector<bool> outside; ///< per panel: comes last, outside of all threads between others; empty: none
 };
 
 struct PanelPush {

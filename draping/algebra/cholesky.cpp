@@ -12,10 +12,17 @@
 
 namespace toile {
 
+namespace {
+
+constexpr double worn_out = 1.5; // times the work that an order took when it was new: it is time for another
+
+} // namespace
+
 struct Cholesky::Impl {
     cholmod_common common;
     cholmod_factor* factor = nullptr;
     std::vector<int> order; ///< of points
+    double work = 0;        ///< floating-point operations of a factorisation when that order was new
     std::optional<SupernodalCholesky> single; ///< in single precision
     cholmod_dense *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
 
@@ -68,6 +75,21 @@ struct Cholesky::Impl {
         if (!cholmod_metis(&graph, nullptr, 0, 1, order.data(), &common))
             throw std::runtime_error("CHOLMOD could not order the stiffness matrix");
     }
+
+    void find_structure(const BlockMatrix& a) {
+        std::vector<int> scalar_order;
+        scalar_order.reserve(a.rows());
+        for (int i : order)
+            for (int c = 0; c < 3; ++c) scalar_order.push_back(3 * i + c);
+        cholmod_free_factor(&factor, &common);
+        common.nmethods = 1;
+        common.method[0].ordering = CHOLMOD_GIVEN;
+        common.postorder = 1;
+        cholmod_sparse s = view(a);
+        factor = cholmod_analyze_p(&s, scalar_order.data(), nullptr, 0, &common);
+        if (!factor) throw std::runtime_error("CHOLMOD could not analyse the stiffness matrix");
+        single.reset();
+    }
 };
 
 Cholesky::Cholesky() : impl_(std::make_unique<Impl>()) {}
@@ -77,21 +99,16 @@ Cholesky& Cholesky::operator=(Cholesky&&) noexcept = default;
 
 void Cholesky::analyse(const BlockMatrix& a, bool keep_order) {
     Impl& m = *impl_;
-    if (!keep_order || int(m.order.size()) != a.block_rows()) m.find_order(a);
-    std::vector<int> scalar_order;
-    scalar_order.reserve(a.rows());
-    for (int i : m.order)
-        for (int c = 0; c < 3; ++c) scalar_order.push_back(3 * i + c);
-
-    cholmod_free_factor(&m.factor, &m.common);
-    m.common.nmethods = 1;
-    m.common.method[0].ordering = CHOLMOD_GIVEN;
-    m.common.postorder = 1;
-    cholmod_sparse s = Impl::view(a);
-    m.factor = cholmod_analyze_p(&s, scalar_order.data(), nullptr, 0, &m.common);
-    if (!m.factor) throw std::runtime_error("CHOLMOD could not analyse the stiffness matrix");
-    m.single.reset();
+    if (keep_order && int(m.order.size()) == a.block_rows()) {
+        m.find_structure(a);
+        if (m.common.fl < worn_out * m.work) return;
+    }
+    m.find_order(a);
+    m.find_structure(a);
+    m.work = m.common.fl;
 }
+
+double Cholesky::work() const { return impl_->common.fl; }
 
 bool Cholesky::factorise(const BlockMatrix& a) {
     Impl& m = *impl_;

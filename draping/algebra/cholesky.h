@@ -18,8 +18,12 @@ public:
     Cholesky& operator=(Cholesky&&) noexcept;
 
     /// Symbolic analysis for the pattern of `a`. With `keep_order`, the order of an earlier analysis of as many
-    /// points is used again: cheap, and good while only a few blocks (contacts) have come or gone.
+    /// points is used again, which is cheap, unless the blocks (contacts) that have come since make the factorisation
+    /// take half as much work again as when the order was new.
     void analyse(const BlockMatrix& a, bool keep_order = false);
+
+    /// Floating-point operations of a factorisation by the last analysis.
+    double work() const;
 
     /// Numeric factorisation of a matrix with the analysed pattern. False when it is not positive definite.
     bool factorise(const BlockMatrix& a);

@@ -165,6 +165,36 @@ TEST_CASE("a matrix of several pieces is factored like any other") {
     }
 }
 
+TEST_CASE("an order is kept until what has come since makes it a poor one") {
+    const int side = 20, points = side * side;
+    Cholesky cholesky;
+    cholesky.analyse(BlockMatrix(points, grid(side)));
+    const double new_order = cholesky.work();
+    // Sheets folded onto each other ever more: each pattern is factored with the order of the one before, or a new one.
+    for (int folded = 1; folded < side / 2; ++folded) {
+        auto pairs = grid(side);
+        for (int i = 0; i < folded * side; ++i) pairs.emplace_back(i, points - 1 - i);
+        BlockMatrix a(points, pairs);
+        for (const auto& [j, i] : pairs) {
+            a.add_off_diagonal(std::min(i, j), a.find(std::max(i, j), std::min(i, j)), -Mat3::Identity());
+            a.add_diagonal(i, Mat3::Identity());
+            a.add_diagonal(j, Mat3::Identity());
+        }
+        a.add_to_diagonal(Eigen::VectorXd::Constant(3 * points, 0.1));
+        cholesky.analyse(a, true);
+        Cholesky fresh;
+        fresh.analyse(a);
+        CHECK(cholesky.work() < 2.5 * fresh.work());
+        REQUIRE(cholesky.factorise(a));
+        const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(3 * points, -1, 3);
+        Eigen::VectorXd x, product;
+        cholesky.solve(b, x);
+        a.multiply(x, product);
+        CHECK((product - b).norm() < 1e-9 * b.norm());
+    }
+    CHECK(cholesky.work() > new_order);
+}
+
 TEST_CASE("a matrix too stiff for single precision still has a positive definite preconditioner") {
     const int points = 400;
     BlockMatrix a(points, chain(points)); // stiff springs, held in their place by almost nothing

@@ -136,6 +136,22 @@ TEST_CASE("the lower layer is placed first and the upper one keeps off it") {
     CHECK(upper >= lower + 0.002 - 1e-12);
 }
 
+TEST_CASE("a panel that is to lie outside goes beyond the threads of the others") {
+    Cloth c;
+    add_front(c, {0.1, 0, 0.15});
+    add_front(c, {0, 0, 0.2});
+    add_back(c, {0, 0, -0.2});
+    sew_sides(c, 1, 2); // its threads pass through the first panel
+    const TriMesh body = sphere(0.05, 3);
+    CHECK(place_clear(c.garment, c.x, body).pushed.empty());
+    PlaceOptions o;
+    o.outside = {true, false, false};
+    const PlacedClear placed = place_clear(c.garment, c.x, body, o);
+    REQUIRE(placed.pushed.size() == 1);
+    CHECK(push_of(placed, 0).z() > 0.05);
+    CHECK(push_of(placed, 0).z() < 0.06);
+}
+
 TEST_CASE("fixed panels stay, others keep off them, and a panel that no push clears stays too and is named") {
     Cloth c;
     add_front(c, {0, 0, 0.2});

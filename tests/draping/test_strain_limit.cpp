@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/energy/strain_limit.h"
 
+#include "draping/cloth.h"
 #include "tests/support/flat_mesh.h"
 
 #include <catch2/catch.hpp>
@@ -87,4 +88,24 @@ TEST_CASE("a strip that hangs from far beyond its limit comes to rest within it"
     }
     CHECK(x[2].y() < 0.102);
     CHECK(x[2].y() > 0.1012);
+}
+
+TEST_CASE("limits may be drawn in, and none stays none", "[strain_limit]") {
+    const FlatMesh mesh = jittered_rectangle(0.2, 0.2, 0.05, 0.2, 5);
+    const Barrier unused{0.5e-3, 0.5e-4, 1e6};
+    const auto value = [&](Fabric fabric, double strain, double tighter) {
+        fabric.density = 0.15;
+        fabric.bend_warp = fabric.bend_weft = fabric.bend_twist = 1e-5;
+        ClothProblem problem(garment_of(mesh), {fabric}, {}, {unused, unused, false});
+        problem.limit_strain(0.99, tighter);
+        Points x;
+        for (const Vec2& p : mesh.points) x.push_back({p.x(), (1 + strain) * p.y(), 0});
+        problem.arrive(x);
+        return problem.value(x);
+    };
+    const Fabric some = limited(0.02, 0.02, 0.3), drawn_in = limited(0.018, 0.018, 0.3), none = limited(0, 0, 0);
+    CHECK(value(some, 0.0185, 0.1) > 10 * value(some, 0.0185, 0));
+    CHECK(value(some, 0.0175, 0.1) == Approx(value(drawn_in, 0.0175, 0)).epsilon(0.3)); // of other stiffness
+    CHECK(value(none, 0.0185, 0.1) == value(none, 0.0185, 0));
+    CHECK(std::isfinite(value(none, 0.0185, 0)));
 }

@@ -18,9 +18,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <functional>
 #include <map>
-#include <numeric>
 #include <tuple>
 
 namespace toile {
@@ -189,6 +187,7 @@ struct Run {
     /// Settles and books the work on the level.
     SettleResult settle_some(ClothProblem& problem, Points& at, Cholesky& factor, SettleOptions o) {
         o.max_iterations = std::min(o.max_iterations, iterations_left);
+        o.max_step = std::min(o.max_step, edge_length()); // farther, and lists of what may touch grow too long
         const double from = share_begin, span = share_end - share_begin;
         o.progress = [&, base = done](int i, double r) {
             const double within = (base - from) / std::max(span, 1e-9);
@@ -504,8 +503,9 @@ void hang(Run& run, const Garment& open, const Waiting& waiting, ClothProblem& p
     for (int k = 0; k < hanging_iterations / o.max_iterations && !run.stopped; ++k) {
         run.settle_some(problem, x, factor, o);
         const std::vector<char> through = seams_through_body(open, x, run.body);
-        const auto in_the_way = [](char seam, char waits) { return seam && waits; };
-        if (!std::inner_product(through.begin(), through.end(), waiting.seams.begin(), false, std::logical_or(), in_the_way)) break;
+        bool in_the_way = false;
+        for (std::size_t s = 0; s < through.size(); ++s) in_the_way = in_the_way || (through[s] && waiting.seams[s]);
+        if (!in_the_way) break;
     }
     problem.gravity = 0;
 }
@@ -528,7 +528,8 @@ struct MachineSeam {
 bool sew_on(const Run& run, const Garment& open, MachineSeam& seam, ClothProblem& problem, const Points& x) {
     const auto gap = [&](int k) { return stitch_gap(open.stitches[k], x); };
     if (seam.sewn == 0) {
-        if (gap(seam.stitches.back()) < gap(seam.stitches.front())) std::reverse(seam.stitches.begin(), seam.stitches.end());
+        if (gap(seam.stitches.back()) < gap(seam.stitches.front()))
+            std::reverse(seam.stitches.begin(), seam.stitches.end());
         if (gap(seam.stitches.front()) > run.edge_length()) return false;
     }
     const double near = machine_gap * run.edge_length();
@@ -812,7 +813,8 @@ void note_facts(Run& run, const ClothProblem& problem) {
 
 /// Settles on where cloth at rest is beyond its limits: these are hardened, and where the coordinates' last digits no
 /// longer tell the forces of harder ones, drawn in by what the cloth is beyond them.
-SettleResult settle_within_limits(Run& run, ClothProblem& problem, Cholesky& factor, const SettleOptions& o, SettleResult r) {
+SettleResult settle_within_limits(Run& run, ClothProblem& problem, Cholesky& factor, const SettleOptions& o,
+                                  SettleResult r) {
     double turn = hard_limit;
     const auto again = [&](double tighter) {
         problem.limit_strain(turn, tighter);

@@ -29,6 +29,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double seam_stiffness = 500;   // N/m per metre of seam while it is far open
 constexpr double seam_pull = 6;          // N per metre of seam: what a far open seam pulls with
+constexpr double most_pull = 30;         // times that, to which it grows where a seam does not close
+constexpr double stiffest_seam = 2e4;    // N/m per newton that a stitch may pull with
 constexpr double weld_gap = 2e-4;        // m, below which a seam is closed for good
 constexpr double contact_share = 0.06;   // of the edge length: contact distance of levels that are not the last
 constexpr double barrier_stiffness = 1e7; // Pa/m for a cloth of 0.15 kg/m2 at a distance of half a millimetre
@@ -51,7 +53,6 @@ constexpr int most_hangings = 3;         // times that it does
 constexpr double machine_gap = 0.1;      // of the edge length: what sewing by machine leaves behind it
 constexpr int machine_patience = 30;     // rounds that it waits for a gap to close
 constexpr int machine_stitches = 2;      // sewn at a time
-constexpr double most_pull = 30;         // times seam_pull that it grows to
 constexpr double slid = 0.10;            // m below its place at which a held edge counts as slid off
 constexpr double coarse_compression = 0.2; // of the fabric's, on levels that are not the last
 constexpr double coarse_residual = 10;    // to which levels that are not the last are settled
@@ -390,15 +391,15 @@ double close_open_seams(Run& run, const Garment& open, ClothProblem& problem, Po
         if (gap < near_share * run.edge_length() && gap > 0.8 * last && crossings_when_joined(run, x) == 0) return gap;
         // A seam that does not pull with all it may is pulled harder.
         for (auto& s : problem.stitches)
-            if (s.stiffness * gap < s.cap) s.stiffness = std::min(3 * s.stiffness, 2e4 * s.cap);
+            if (s.stiffness * gap < s.cap) s.stiffness = std::min(3 * s.stiffness, stiffest_seam * s.cap);
         // One place that waits must not end what still goes on elsewhere; where pulling harder moves nothing at
         // all, something is in the way.
         const double mean = mean_gap(open, x);
         locked = std::min(gap / last, mean / last_mean) > 0.995 ? locked + 1 : 0;
         if (locked == 4) return gap;
         if (gap > 0.95 * last) {
-            if (cap_scale > 30 && mean > 0.95 * last_mean) return gap;
-            if (cap_scale <= 30) {
+            if (cap_scale > most_pull && mean > 0.95 * last_mean) return gap;
+            if (cap_scale <= most_pull) {
                 cap_scale *= 1.5;
                 for (auto& s : problem.stitches) s.cap *= 1.5;
             }
@@ -540,7 +541,7 @@ bool sew_on(const Run& run, const Garment& open, MachineSeam& seam, ClothProblem
         if (gap(k) < 0.2 * near) continue;
         auto& spring = problem.stitches[k];
         spring.cap = std::min(1.2 * spring.cap, most_pull * seam_pull * open.stitches[k].length);
-        spring.stiffness = std::min(1.5 * spring.stiffness, 2e4 * spring.cap);
+        spring.stiffness = std::min(1.5 * spring.stiffness, stiffest_seam * spring.cap);
     }
     const std::size_t next = closed ? std::min(seam.sewn + machine_stitches, seam.stitches.size()) : seam.sewn;
     const bool any = next > seam.sewn;
@@ -600,9 +601,10 @@ Sewn sew_open(Run& run, const Start& start, const Sewing& way) {
         }
         return close_open_seams(run, some, problem, sewn.x, factor);
     };
+    const bool some_wait = !way.waiting.seams.empty();
     double gap = close(0);
-    if (!way.waiting.seams.empty()) gap = close(1);
-    for (int k = 0; !way.waiting.seams.empty() && k < most_hangings && gap < gaping && !run.stopped; ++k) {
+    if (some_wait) gap = close(1);
+    for (int k = 0; some_wait && k < most_hangings && gap < gaping && !run.stopped; ++k) {
         hang(run, open, way.waiting, problem, sewn.x, factor);
         if (k == 0) sew_by_machine(run, open, way.waiting, problem, sewn.x, factor);
         gap = close(2);

@@ -32,6 +32,16 @@ bool pierces(const Vec3& a, const Vec3& b, const Corners& t) {
     return segment_through_triangle(a, b, t[0], t[1], t[2]).has_value();
 }
 
+/// Whether the segment from a to b passes through a triangle of a tree, whose items have the corners that `corners` gives.
+bool passes(const Bvh& tree, const Vec3& a, const Vec3& b, auto&& corners) {
+    Box segment;
+    segment.extend(a);
+    segment.extend(b);
+    bool through = false;
+    tree.overlapping(segment, [&](int k) { through = through || pierces(a, b, corners(k)); });
+    return through;
+}
+
 /// Whether two triangles cross or are nearer than `distance`.
 bool nearer_than(const Corners& a, const Corners& b, double distance) {
     const double limit = distance * distance;
@@ -198,14 +208,8 @@ bool in_threads(const Placing& p, const PlacedPiece& piece, const Vec3& push) {
         const PlacedPiece &one = p.pieces[p.piece_of_node[s.a]], &other = p.pieces[p.piece_of_node[s.b[0]]];
         if (!one.placed || !other.placed || outside(p, one) || outside(p, other)) continue;
         const Vec3 a = p.x[s.a] + one.push - push, b = seam_point(s, p.x) + other.push - push;
-        Box thread;
-        thread.extend(a);
-        thread.extend(b);
-        bool through = false;
-        piece.tree.overlapping(thread, [&](int k) {
-            through = through || pierces(a, b, corners_of(p.x, p.garment.nodes(piece.triangles[k])));
-        });
-        if (through) return true;
+        if (passes(piece.tree, a, b, [&](int k) { return corners_of(p.x, p.garment.nodes(piece.triangles[k])); }))
+            return true;
     }
     return false;
 }
@@ -232,7 +236,7 @@ double distance_from_body(const Placing& p, const Piece& piece) {
 bool fixed(const Placing& p, const Piece& piece) { return any_of_panels(piece, p.options.fixed); }
 
 std::vector<int> order_of_placing(const Placing& p) {
-    std::vector<std::tuple<bool, bool, int, double>> key; // fixed ones first, then layer by layer
+    std::vector<std::tuple<bool, bool, int, double>> key; // fixed ones first, outside ones last, layer by layer
     for (const Piece& piece : p.pieces)
         key.emplace_back(!fixed(p, piece), outside(p, piece), p.garment.panel_layers[piece.panels[0]],
                          distance_from_body(p, piece));
@@ -258,37 +262,32 @@ bool find_push(const Placing& p, PlacedPiece& piece, const Vec3& axis) {
     return false;
 }
 
-/// Whether a thread passes through the body once the garment is moved.
-bool passes(const Placing& p, const Stitch& s, const Vec3& move) {
-    const Vec3 a = p.x[s.a] + move, b = seam_point(s, p.x) + move;
-    Box thread;
-    thread.extend(a);
-    thread.extend(b);
-    bool through = false;
-    p.body_tree.overlapping(thread, [&](int t) {
-        through = through || pierces(a, b, corners_of(p.body.points, p.body.triangles[t]));
-    });
-    return through;
-}
+/// A body that threads may pass through.
+struct Obstacle {
+    const TriMesh& body;
+    Bvh tree = Bvh(triangle_boxes(body.points, body.triangles, 0));
+
+    bool in_the_way(const Vec3& a, const Vec3& b) const {
+        return passes(tree, a, b, [&](int t) { return corners_of(body.points, body.triangles[t]); });
+    }
+};
 
 /// Metres of open seam whose threads pass through the body once the garment is moved.
-double blocked_seam(const Placing& p, const Vec3& move) {
+double blocked_seam(const Garment& garment, const Points& x, const Obstacle& obstacle, const Vec3& move) {
     double blocked = 0;
-    for (const Stitch& s : p.garment.stitches)
-        if (passes(p, s, move)) blocked += s.length;
+    for (const Stitch& s : garment.stitches)
+        if (obstacle.in_the_way(x[s.a] + move, seam_point(s, x) + move)) blocked += s.length;
     return blocked;
 }
 
 } // namespace
 
 double free_height(const Garment& garment, const Points& x, const TriMesh& body) {
-    const PlaceOptions options;
-    Placing p{.garment = garment, .x = x, .body = body, .options = options};
-    p.body_tree = Bvh(triangle_boxes(body.points, body.triangles, 0));
-    double best = 0, least = blocked_seam(p, Vec3::Zero());
+    const Obstacle obstacle{body};
+    double best = 0, least = blocked_seam(garment, x, obstacle, Vec3::Zero());
     for (int k = 1; k * height_step <= highest; ++k)
         for (const double height : {k * height_step, -k * height_step}) {
-            const double blocked = blocked_seam(p, {0, height, 0});
+            const double blocked = blocked_seam(garment, x, obstacle, {0, height, 0});
             if (blocked > least - height_gain * (std::abs(height) - std::abs(best))) continue;
             least = blocked;
             best = height;
@@ -297,16 +296,11 @@ double free_height(const Garment& garment, const Points& x, const TriMesh& body)
 }
 
 std::vector<char> seams_through_body(const Garment& garment, const Points& x, const TriMesh& body) {
-    const PlaceOptions none;
-    const Placing p{.garment = garment,
-                    .x = x,
-                    .body = body,
-                    .options = none,
-                    .body_tree = Bvh(triangle_boxes(body.points, body.triangles, 0))};
+    const Obstacle obstacle{body};
     std::vector<char> through;
     for (const Stitch& s : garment.stitches) {
         through.resize(std::max(through.size(), std::size_t(s.seam + 1)), 0);
-        if (passes(p, s, Vec3::Zero())) through[s.seam] = 1;
+        if (obstacle.in_the_way(x[s.a], seam_point(s, x))) through[s.seam] = 1;
     }
     return through;
 }

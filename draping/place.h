@@ -33,8 +33,8 @@ struct PlacedClear {
 /// Pushes panels clear one after another, those of lower layers and those nearest to the body first: each by
 /// the smallest step along its own normal, to either side, or horizontally away from the body's middle, that
 /// leaves it outside the body and at the distances that the options ask for. Panels that keep them where they
-/// are stay. Panels may touch where stitches of no length join them, as long as neither is moved against the
-/// other. `garment` is open (a node per vertex); a panel's contact with itself is not looked at.
+/// are stay. Those that are to lie outside come last and keep clear of the threads between the others as well.
+/// Panels may touch where stitches of no length join them, as long as neither is moved against the other. `garment` is open (a node per vertex); a panel's contact with itself is not looked at.
 PlacedClear place_clear(const Garment& garment, const Points& x, const TriMesh& body,
                         const PlaceOptions& options = {});
 

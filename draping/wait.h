@@ -14,7 +14,8 @@ struct Waiting {
 };
 
 /// Seams of an open garment that are wider than `closed` m at x and have the body between their sides wait, and with
-/// them every seam of what hangs by nothing but their panels: a flounce at the end of a skirt. Nothing waits (empty)
+/// them those that would join what hangs by nothing but one side to what hangs by another: the sides of a flounce at
+/// the end of a skirt. Nothing waits (empty)
 /// when no seam is in that state, or every one. What carries is told by labelled borders; without any, seams wait alone.
 Waiting what_waits(const Garment& garment, const Points& x, const TriMesh& body, double closed);
 

@@ -36,6 +36,20 @@ std::vector<std::pair<int, int>> grid(int side) {
     return pairs;
 }
 
+/// Springs between the points of each pair, which `spring` gives.
+BlockMatrix sprung(int points, const std::vector<std::pair<int, int>>& pairs, auto&& spring) {
+    BlockMatrix a(points, pairs);
+    for (const auto& [j, i] : pairs) {
+        const Mat3 s = spring(j, i);
+        a.add_off_diagonal(std::min(i, j), a.find(std::max(i, j), std::min(i, j)), -s);
+        a.add_diagonal(i, s);
+        a.add_diagonal(j, s);
+    }
+    return a;
+}
+
+Mat3 unit_spring(int, int) { return Mat3::Identity(); }
+
 // Random blocks made diagonally dominant.
 Filled filled(int points) {
     const std::vector<std::pair<int, int>> pairs = chain(points);
@@ -112,13 +126,9 @@ TEST_CASE("a matrix that is not positive definite is told by its factorisation")
 TEST_CASE("a preconditioner solves as the exact factor does, with the same bits for any number of threads") {
     const int side = 70, rows = 3 * side * side;
     const auto pairs = grid(side);
-    BlockMatrix a(side * side, pairs);
-    for (const auto& [j, i] : pairs) {
-        const Mat3 spring = (Vec3(1, 0.3 * (i % 7), 0.1 * (j % 5)).asDiagonal()) * 50.0;
-        a.add_off_diagonal(j, a.find(i, j), -spring);
-        a.add_diagonal(i, spring);
-        a.add_diagonal(j, spring);
-    }
+    BlockMatrix a = sprung(side * side, pairs, [](int j, int i) -> Mat3 {
+        return (Vec3(1, 0.3 * (i % 7), 0.1 * (j % 5)).asDiagonal()) * 50.0;
+    });
     Cholesky cholesky;
     cholesky.analyse(a);
     for (const double shift : {0.5, 5.0}) { // a new factor is not solved with the old one
@@ -146,12 +156,7 @@ TEST_CASE("a matrix of several pieces is factored like any other") {
         std::vector<std::pair<int, int>> pairs;
         for (int piece = 0; piece < pieces; ++piece)
             for (const auto& [j, i] : grid(side)) pairs.emplace_back(piece * side * side + j, piece * side * side + i);
-        BlockMatrix a(points, pairs);
-        for (const auto& [j, i] : pairs) {
-            a.add_off_diagonal(j, a.find(i, j), -Mat3::Identity());
-            a.add_diagonal(i, Mat3::Identity());
-            a.add_diagonal(j, Mat3::Identity());
-        }
+        BlockMatrix a = sprung(points, pairs, unit_spring);
         a.add_to_diagonal(Eigen::VectorXd::Constant(3 * points, 0.1));
         Cholesky cholesky;
         cholesky.analyse(a);
@@ -174,12 +179,7 @@ TEST_CASE("an order is kept until what has come since makes it a poor one") {
     for (int folded = 1; folded < side / 2; ++folded) {
         auto pairs = grid(side);
         for (int i = 0; i < folded * side; ++i) pairs.emplace_back(i, points - 1 - i);
-        BlockMatrix a(points, pairs);
-        for (const auto& [j, i] : pairs) {
-            a.add_off_diagonal(std::min(i, j), a.find(std::max(i, j), std::min(i, j)), -Mat3::Identity());
-            a.add_diagonal(i, Mat3::Identity());
-            a.add_diagonal(j, Mat3::Identity());
-        }
+        BlockMatrix a = sprung(points, pairs, unit_spring);
         a.add_to_diagonal(Eigen::VectorXd::Constant(3 * points, 0.1));
         cholesky.analyse(a, true);
         Cholesky fresh;
@@ -197,13 +197,8 @@ TEST_CASE("an order is kept until what has come since makes it a poor one") {
 
 TEST_CASE("a matrix too stiff for single precision still has a positive definite preconditioner") {
     const int points = 400;
-    BlockMatrix a(points, chain(points)); // stiff springs, held in their place by almost nothing
-    for (const auto& [j, i] : chain(points)) {
-        const Mat3 spring = 1e9 * Mat3::Identity();
-        a.add_off_diagonal(j, a.find(i, j), -spring);
-        a.add_diagonal(i, spring);
-        a.add_diagonal(j, spring);
-    }
+    // Stiff springs, held in their place by almost nothing.
+    BlockMatrix a = sprung(points, chain(points), [](int, int) -> Mat3 { return 1e9 * Mat3::Identity(); });
     a.add_to_diagonal(Eigen::VectorXd::Constant(3 * points, 1e-3));
     Cholesky cholesky;
     cholesky.analyse(a);

@@ -36,7 +36,7 @@ Cloth dress(bool labelled) {
     return c;
 }
 
-/// Between the sides of the skirt, and narrower elsewhere.
+/// Between the sides of the skirt alone.
 const TriMesh hips = box({-0.15, -0.05, -0.05}, {0.15, 0.05, 0.05});
 
 } // namespace

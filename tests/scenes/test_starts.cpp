@@ -81,10 +81,12 @@ json three_quarter_ring(double girth, double width) {
 json band(double length, double height) {
     return {{"vertices", {{-length / 2, 0}, {length / 2, 0}, {length / 2, height}, {-length / 2, height}}},
             {"edges",
-             {{{"endpoints", {0, 1}}},
-              {{"endpoints", {1, 2}}},
-              {{"endpoints", {2, 3}}, {"label", "lower_interface"}},
-              {{"endpoints", {3, 0}}}}}};
+             {{{"endpoints", {0, 1}}}, {{"endpoints", {1, 2}}}, {{"endpoints", {2, 3}}}, {{"endpoints", {3, 0}}}}}};
+}
+
+json seam(const char* a, int edge_a, const char* b, int edge_b) {
+    const auto end = [](const char* panel, int edge) { return json{{"panel", panel}, {"edge", edge}}; };
+    return json::array({end(a, edge_a), end(b, edge_b)});
 }
 
 json at(json panel, double y, double z) {
@@ -103,9 +105,9 @@ json mirrored(json panel) {
 
 /// Front and back of a full skirt on a waistband, both flat, so that the arms lie between the sides that belong together.
 json full_skirt() {
-    const json ring = three_quarter_ring(36.5, 45), waist = band(36.5, 4);
-    const auto end = [](const char* panel, int edge) { return json{{"panel", panel}, {"edge", edge}}; };
-    const auto seam = [](const json& a, const json& b) { return json::array({a, b}); };
+    const json ring = three_quarter_ring(36.5, 45);
+    json waist = band(36.5, 4);
+    waist["edges"][2]["label"] = "lower_interface";
     return {{"pattern",
              {{"panels",
                {{"skirt_front", at(ring, 91, 25)},
@@ -113,9 +115,9 @@ json full_skirt() {
                 {"band_front", at(waist, 100, 20)},
                 {"band_back", at(mirrored(waist), 100, -20)}}},
               {"stitches",
-               {seam(end("band_front", 1), end("band_back", 3)), seam(end("band_front", 3), end("band_back", 1)),
-                seam(end("band_front", 0), end("skirt_front", 3)), seam(end("band_back", 0), end("skirt_back", 3)),
-                seam(end("skirt_front", 0), end("skirt_back", 2)), seam(end("skirt_front", 2), end("skirt_back", 0))}}}},
+               {seam("band_front", 1, "band_back", 3), seam("band_front", 3, "band_back", 1),
+                seam("band_front", 0, "skirt_front", 3), seam("band_back", 0, "skirt_back", 3),
+                seam("skirt_front", 0, "skirt_back", 2), seam("skirt_front", 2, "skirt_back", 0)}}}},
             {"properties",
              {{"units_in_meter", 100}, {"curvature_coords", "relative"}, {"normalized_edge_loops", true}}}};
 }
@@ -128,14 +130,10 @@ json flounced_skirt() {
     const json flounce = band(260, 6);
     panels["flounce_front"] = at(flounce, 40, 25);
     panels["flounce_back"] = at(mirrored(flounce), 40, -25);
-    for (const char* panel : {"flounce_front", "flounce_back"}) panels[panel]["edges"][2].erase("label");
-    const auto seam = [&](const char* a, int e, const char* b, int f) {
-        stitches.push_back({{{"panel", a}, {"edge", e}}, {{"panel", b}, {"edge", f}}});
-    };
-    seam("skirt_front", 1, "flounce_front", 2);
-    seam("skirt_back", 1, "flounce_back", 2);
-    seam("flounce_front", 1, "flounce_back", 3);
-    seam("flounce_front", 3, "flounce_back", 1);
+    stitches.push_back(seam("skirt_front", 1, "flounce_front", 2));
+    stitches.push_back(seam("skirt_back", 1, "flounce_back", 2));
+    stitches.push_back(seam("flounce_front", 1, "flounce_back", 3));
+    stitches.push_back(seam("flounce_front", 3, "flounce_back", 1));
     return skirt;
 }
 

@@ -15,14 +15,12 @@ namespace {
 
 constexpr double keep_of_gap = 0.2;       // a step leaves at least this share of every gap
 constexpr double least_slack = 0.0015;    // m; a list serves at least for motions of this size
-constexpr double slack_per_step = 3;      // and for this many steps of the present size, but for long ones,
-constexpr double most_slack = 0.005;      // m, whose lists would grow too long
+constexpr double slack_per_step = 3;      // and for this many steps of the present size, but no more than
+constexpr double most_slack = 0.005;      // m, or
+constexpr double most_slack_share = 0.5;  // of an edge, or lists would grow too long
 constexpr double most_moved = 0.5;        // share of the nodes; if more have moved, everything is looked for anew
 constexpr double spare_slack = 2;         // times what a node needs, beyond which its slack is taken in
 constexpr int query_chunk = 64;
-
-// A little more than the step, or rounding would take its end for out of reach.
-double slack_for(double step) { return std::max(1.01 * step, std::min(slack_per_step * step, most_slack)); }
 
 /// Whether the plane of the triangle, or the two parallel planes through the edges, show that a pair is farther apart
 /// than `reach`.
@@ -92,6 +90,10 @@ Contact::Contact(ContactCloth cloth, const TriMesh& body, const ContactOptions& 
     }
     body_slack_.assign(body_.size(), 0.0);
     make_body_trees();
+    double edges_length = 0;
+    for (const double l : cloth_.edge_length) edges_length += l;
+    if (edges_length > 0)
+        most_slack_ = std::min(most_slack, most_slack_share * edges_length / double(cloth_.edge_length.size()));
     triangle_of_node_.assign(nodes_, -1);
     for (std::size_t t = 0; t < cloth_.triangles.size(); ++t)
         for (const int i : cloth_.triangles[t]) triangle_of_node_[i] = int(t);
@@ -194,10 +196,16 @@ bool Contact::body_serves(const Points* body_dx) const {
     return true;
 }
 
+// A little more than the step, or rounding would take its end for out of reach.
+double Contact::slack_for(double step) const {
+    return std::max(1.01 * step, std::min(slack_per_step * step, most_slack_));
+}
+
 bool Contact::prepare(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx) {
     // Pairs of nodes that stay within their slack serve on; those of the others are looked for anew, and those of
     // nodes that need less slack by now, whose pairs are many.
-    const auto wanted = [&](int i) { return std::max(least_slack, slack_for(dx.segment<3>(3 * i).norm())); };
+    const double least = std::min(least_slack, most_slack_);
+    const auto wanted = [&](int i) { return std::max(least, slack_for(dx.segment<3>(3 * i).norm())); };
     std::vector<char> moved(nodes_, 1);
     const bool body_serves = this->body_serves(body_dx);
     if (built_ && body_serves) {
@@ -277,7 +285,13 @@ void Contact::find_pairs(const std::vector<char>& moved_node) {
                         found[c].push_back(p);
                     });
         });
-        for (auto& f : found) pairs_.insert(pairs_.end(), f.begin(), f.end());
+        std::size_t total = pairs_.size();
+        for (const auto& f : found) total += f.size();
+        pairs_.reserve(total);
+        for (auto& f : found) {
+            pairs_.insert(pairs_.end(), f.begin(), f.end());
+            std::vector<ContactPair>().swap(f); // lists of millions are not to lie about twice
+        }
     };
     const auto sewn_to = [&](int i, int j) {
         const auto& sewn = sewn_[cloth_.group[i]];

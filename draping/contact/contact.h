@@ -112,6 +112,7 @@ private:
     double moved(const std::vector<double>& distance, const ContactPair& p) const;
     std::vector<double> moved_since_built(const Points& x) const;
     bool body_serves(const Points* body_dx) const;
+    double slack_for(double step) const;
     bool near_in_cloth(const ContactPair& p) const;
     void make_body_trees();
 
@@ -131,6 +132,7 @@ private:
     bool built_ = false;
     std::vector<ContactPair> pairs_;
     std::vector<int> triangle_of_node_; ///< one of each node's
+    double most_slack_ = 0;             ///< m, beyond the step itself
     bool body_moved_ = false;        ///< since body_built_at_
     Points built_at_;                ///< where each node was when its pairs were looked for
     std::vector<double> slack_;      ///< how far each node may move from there while the list serves

@@ -13,7 +13,8 @@ namespace toile {
 
 namespace {
 
-constexpr double friction_rest = 10; // residual below which friction only gives way
+constexpr double friction_rest = 10; // residual below which friction only gives way,
+constexpr double friction_off = 1e4; // until the residual is above this again: forces of impacts are no friction
 constexpr int renew_every = 8;        // arrivals after which what is lagged is renewed in any case
 
 double rest_area(const Mat2& edges) { return 0.5 * std::abs(edges.determinant()); }
@@ -159,7 +160,7 @@ void ClothProblem::arrive(const Points& x) {
     // Near rest friction only gives way where it is more than contact can answer: less than that is friction
     // too, and forces that follow one another up and down would not come to rest. It grows only where a node would
     // give way for want of it.
-    near_rest_ = near_rest_ || residual_ < friction_rest;
+    near_rest_ = residual_ < (near_rest_ ? friction_off : friction_rest);
     const bool renew = arrivals_ % renew_every == 0 || residual_ < 0.1 * renewed_at_;
     ++arrivals_;
     if (near_rest_ && !rising_) {

@@ -84,9 +84,9 @@ SettleResult DrapeRun::settle_some(ClothProblem& problem, Points& at, Cholesky& 
     o.max_iterations = std::min(o.max_iterations, iterations_left);
     o.max_step = std::min(o.max_step, edge_length()); // farther, and lists of what may touch grow too long
     const double from = share_begin, span = share_end - share_begin;
-    o.progress = [&, base = done](int i, double r) {
+    o.progress = [&, base = done, goes_on = o.progress](int i, double r) {
         const double within = (base - from) / std::max(span, 1e-9);
-        return tell(within + (1 - within) * (1 - std::exp(-i / 60.0)), r);
+        return tell(within + (1 - within) * (1 - std::exp(-i / 60.0)), r) && (!goes_on || goes_on(i, r));
     };
     const SettleResult r = settle(problem, at, factor, o);
     result.residual = r.residual;

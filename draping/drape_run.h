@@ -80,7 +80,7 @@ struct DrapeRun {
     /// whether the run goes on.
     bool tell(double within, double residual);
 
-    /// Settles within the limits of the run and books the work on the level.
+    /// Settles within the limits of the run, and as long as o.progress wants, and books the work on the level.
     SettleResult settle_some(ClothProblem& problem, Points& at, Cholesky& factor, SettleOptions o);
 
     /// A coarse mesh cannot fold as finely as the cloth would and must be let shrink instead, or it locks.

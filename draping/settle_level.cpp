@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace toile {
 
@@ -15,7 +16,8 @@ namespace {
 
 constexpr double soft_limit = 0.7;             // turn of the strain limits' barrier that cloth beyond them can meet
 constexpr double hard_limit = 0.9;             // and the one to end with, hardened further where the cloth needs it
-constexpr double hardest_limit = 0.998;        // from there on limits are not hardened but
+constexpr double hardest_limit = 0.998;        // from there on, or where the cloth does not come to rest within
+constexpr int harder_iterations = 200;         // so many, limits are not hardened but
 constexpr double least_tighter = 2.5e-4;       // drawn in by such shares of theirs
 constexpr double most_tighter = 2e-3;
 constexpr double inner_stitch_stiffness = 1e5; // N/m, of stitches to the inside of an edge of closed seams
@@ -23,6 +25,9 @@ constexpr double coarse_residual = 10;         // to which levels that are not t
 constexpr int untangle_every = 20;             // iterations after which cloth that did not come apart is tried again,
 constexpr int most_untangles = 5;              // in each pass
 constexpr int most_iterations = 1000;          // of the last pass of a level
+constexpr int tight_every = 100;               // iterations after which cloth is looked at that may be too small
+constexpr double too_tight = 0.01;             // m, missing round the garment, of which
+constexpr double tight_gain = 0.1;             // this share has to have gone since, for it to go on
 
 /// What acts on a closed garment at every level beside cloth, contact and weight: pins, bands, hooks that
 /// stay and stitches that cannot become shared nodes.
@@ -88,21 +93,45 @@ void note_facts(DrapeRun& run, const ClothProblem& problem) {
     f.inner_gap = seam_gap_max(run.garment, run.x);
 }
 
+/// Tells when cloth that is too short round the body, or that the body could not grow back in, has had time to slide
+/// to where it fits and has not: no limit however hard makes it longer, but takes thousands of iterations over it.
+struct TightWatch {
+    const DrapeRun& run;
+    double missing = std::numeric_limits<double>::infinity(); ///< m, when looked at last
+
+    bool gives_up(int iteration) {
+        if (iteration == 0 || iteration % tight_every) return false;
+        const double last = missing;
+        missing = find_tightness(run.garment, run.x, run.fabrics).missing;
+        return !run.grown || (missing > too_tight && missing > (1 - tight_gain) * last);
+    }
+};
+
 /// Settles on where cloth at rest is beyond its limits: these are hardened, and where the coordinates' last
-/// digits no longer tell the forces of harder ones, drawn in by what the cloth is beyond them.
+/// digits no longer tell the forces of harder ones, or the cloth does not come to rest between them and the body,
+/// drawn in by what the cloth is beyond them.
 SettleResult settle_within_limits(DrapeRun& run, ClothProblem& problem, Cholesky& factor, const SettleOptions& o,
                                   SettleResult r) {
+    const auto beyond = [&] { return r.end != SettleEnd::stopped && !problem.beyond_limits(run.x).empty(); };
     double turn = hard_limit;
-    const auto again = [&](double tighter) {
+    SettleOptions some = o;
+    some.max_iterations = harder_iterations;
+    while (beyond() && turn < hardest_limit) {
+        const Points before = run.x;
+        const double harder = 1 - (1 - turn) / 3;
+        problem.limit_strain(harder);
+        const SettleResult h = run.settle_some(problem, run.x, factor, some);
+        if (h.end != SettleEnd::settled && h.end != SettleEnd::stopped && r.end == SettleEnd::settled) {
+            run.x = before;
+            break;
+        }
+        turn = harder;
+        r = h;
+    }
+    for (double tighter = least_tighter; beyond() && tighter < most_tighter; tighter *= 2) {
         problem.limit_strain(turn, tighter);
         r = run.settle_some(problem, run.x, factor, o);
-    };
-    const auto beyond = [&] { return !run.stopped && !problem.beyond_limits(run.x).empty(); };
-    while (beyond() && turn < hardest_limit) {
-        turn = 1 - (1 - turn) / 3;
-        again(0);
     }
-    for (double tighter = least_tighter; beyond() && tighter < most_tighter; tighter *= 2) again(tighter);
     return r;
 }
 
@@ -145,6 +174,7 @@ void settle_level(DrapeRun& run) {
         problem.friction.coefficient = 0;
     }
     SettleResult r;
+    TightWatch tight{run};
     for (const Pass& pass : passes) {
         if (run.stopped) break;
         const bool last_pass = &pass == &passes.back();
@@ -166,6 +196,7 @@ void settle_level(DrapeRun& run) {
             run.settle_some(problem, run.x, factor, some);
             untangle();
         }
+        if (last_pass && run.last_level()) o.progress = [&tight](int i, double) { return !tight.gives_up(i); };
         r = run.settle_some(problem, run.x, factor, o);
         if (last_pass && run.last_level()) r = settle_within_limits(run, problem, factor, o, r);
     }

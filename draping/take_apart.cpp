@@ -2,6 +2,7 @@
 #include "draping/take_apart.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace toile {
 
@@ -9,6 +10,9 @@ namespace {
 
 constexpr double grow_distance = 2e-3; // m, contact distance while the body grows back
 constexpr double grow_share = 0.5;     // of the way to the cloth that the body takes at once, lest it get stuck there
+constexpr int most_grow_rounds = 300;
+constexpr int grow_patience = 30;      // rounds in which it has to come
+constexpr double grow_gain = 0.1;      // this share nearer to its full size
 
 Points vertex_normals(const TriMesh& mesh) {
     Points n(mesh.points.size(), Vec3::Zero());
@@ -30,12 +34,17 @@ bool grow(DrapeRun& run, ClothProblem& problem, Points& x, Cholesky& factor) {
     o.exact_below = 0;
     const Eigen::VectorXd still = Eigen::VectorXd::Zero(3 * problem.points());
     bool grown = false;
-    for (int k = 0; k < 200 && !run.stopped && !grown; ++k) {
+    double looked = std::numeric_limits<double>::infinity(); // m, still to go when looked at last
+    for (int k = 0; k < most_grow_rounds && !run.stopped && !grown; ++k) {
         Points motion(run.body.points.size());
         double longest = 0;
         for (std::size_t v = 0; v < motion.size(); ++v) {
             motion[v] = run.body.points[v] - contact.body()[v];
             longest = std::max(longest, motion[v].norm());
+        }
+        if (k % grow_patience == 0) {
+            if (longest > (1 - grow_gain) * looked) break;
+            looked = longest;
         }
         const double part = std::min(1.0, 2 * contact.options().body.distance / longest);
         for (Vec3& m : motion) m *= part;

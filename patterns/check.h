@@ -20,7 +20,7 @@ struct SeamLengths {
 };
 
 struct CheckOptions {
-    double max_ease = 1.5;    ///< ratio - 1 above which a seam is an error (2.05 : 1 occurs in real ruffles)
+    double max_ease = 3;      ///< ratio - 1 above which a seam is an error (2.6 : 1 occurs in real gathers)
     double warn_ease = 0.5;   ///< above this a warning
     double note_ease = 0.1;   ///< above this a note: gathers are a design, not a fault
     double min_edge = 1e-4;   ///< metres; a shorter edge is degenerate

@@ -116,8 +116,8 @@ class Garment:
     def __init__(self):
         self.panels, self.stitches = {}, []
 
-    def panel(self, name, outline, translation, turn=0.0, label="body"):
-        """Places an outline: turned by `turn` degrees in its plane, then moved."""
+    def panel(self, name, outline, translation, turn=0.0, label="body", about_y=0.0):
+        """Places an outline: turned by `turn` degrees in its plane, or out of it about y, then moved."""
         vertices, edges = outline.starts(), []
         for k, (start, side) in enumerate(zip(vertices, outline.sides)):
             edge = {"endpoints": [k, (k + 1) % len(vertices)]}
@@ -127,7 +127,7 @@ class Garment:
                 kind = {1: "quadratic", 2: "cubic"}[len(side.controls)]
                 edge["curvature"] = {"type": kind, "params": [relative(start, side.to, c) for c in side.controls]}
             edges.append(edge)
-        self.panels[name] = {"translation": list(translation), "rotation": [0.0, 0.0, turn],
+        self.panels[name] = {"translation": list(translation), "rotation": [0.0, about_y, turn],
                              "vertices": [rounded(v) for v in vertices], "edges": edges, "label": label,
                              "tags": [s.tag for s in outline.sides]}
 
@@ -226,34 +226,93 @@ def place_sleeve(b, top, width, off):
     return (b["arm_x"] + out[0] * reach + up[0] * 0.5 * width, b["arm_y"] + out[1] * reach + up[1] * 0.5 * width)
 
 
-def tee(b):
-    garment = Garment()
-    hem_y = b["hip_y"] + 2
-    chest = b["bust"] + 8
+def sew_top(garment, b, prefix="", ease=8, biceps_ease=5.5, hem=2, sleeve=22.0, off=0.0, opens=False):
+    """A top with set-in sleeves: its hem `hem` above the hip, its panels `off` farther from the body than those of a
+    tee. One that opens has two fronts. Returns the left halves of front and back."""
+    hem_y = b["hip_y"] + hem
+    chest = b["bust"] + ease
     underarm = b["armpit_y"] - 2.5 - hem_y
     neck = b["neck_y"] - 0.4 - hem_y
-    hip = max(chest, b["hip"] + 4)
+    hip = max(chest, b["hip"] + ease - 4)
     front_half = tee_body(b, chest / 4 + 0.5, 9.5, neck + 2.0, underarm, hip / 4 + 0.5)
     back_half = tee_body(b, chest / 4 - 0.5, 2.4, neck + 1.2, underarm, hip / 4 - 0.5)
-    front_z, back_z = b["front_z"] + 9, b["back_z"] - 7
-    garment.panel("front", whole(front_half), (0, hem_y, front_z))
-    garment.panel("back", whole(back_half).turned(), (0, hem_y, back_z))
+    front_z, back_z = b["front_z"] + 9 + off, b["back_z"] - 7 - off
+    fronts = (f"{prefix}front",) * 2
+    if opens:
+        fronts = (f"{prefix}left_front", f"{prefix}right_front")
+        half = Outline(front_half.start, front_half.sides + [Side(front_half.start, tag="left_edge")])
+        garment.panel(fronts[0], half, (0.4, hem_y, front_z))
+        garment.panel(fronts[1], half.mirror(), (-0.4, hem_y, front_z))
+    else:
+        garment.panel(fronts[0], whole(front_half), (0, hem_y, front_z))
+    back = f"{prefix}back"
+    garment.panel(back, whole(back_half).turned(), (0, hem_y, back_z))
 
-    top, biceps = 22.0, b["upper_arm"] + 5.5
-    height, widths = sleeve_sizes([half.edge_length("left_armhole") for half in (front_half, back_half)], biceps, top)
-    x, y = place_sleeve(b, top, biceps / 2, off=2.0)
-    for name, width, z in zip("fb", widths, (b["arm_z"] + 12, b["arm_z"] - 12)):
-        sleeve = half_sleeve(height, width, width - 1.2, top)
-        left = sleeve if name == "f" else sleeve.turned()
-        garment.panel(f"left_sleeve_{name}", left, (x, y, z), -b["arm_angle"], "arm")
-        garment.panel(f"right_sleeve_{name}", left.mirror(), (-x, y, z), b["arm_angle"], "arm")
+    biceps = b["upper_arm"] + biceps_ease
+    height, widths = sleeve_sizes([half.edge_length("left_armhole") for half in (front_half, back_half)], biceps,
+                                  sleeve)
+    x, y = place_sleeve(b, sleeve, biceps / 2, off=2.0)
+    apart = 12 + 0.8 * off
+    for name, width, z in zip("fb", widths, (b["arm_z"] + apart, b["arm_z"] - apart)):
+        outline = half_sleeve(height, width, width - 1.2, sleeve)
+        left = outline if name == "f" else outline.turned()
+        garment.panel(f"{prefix}left_sleeve_{name}", left, (x, y, z), -b["arm_angle"], "arm")
+        garment.panel(f"{prefix}right_sleeve_{name}", left.mirror(), (-x, y, z), b["arm_angle"], "arm")
 
-    garment.sew_both("front", "left_shoulder", "back", "left_shoulder")
-    garment.sew_both("front", "left_side", "back", "left_side")
-    garment.sew_both("left_sleeve_f", "top", "left_sleeve_b", "top")
-    garment.sew_both("left_sleeve_f", "underarm", "left_sleeve_b", "underarm")
-    garment.sew_both("left_sleeve_f", "cap", "front", "left_armhole")
-    garment.sew_both("left_sleeve_b", "cap", "back", "left_armhole")
+    garment.sew_both(fronts[0], "left_shoulder", back, "left_shoulder")
+    garment.sew_both(fronts[0], "left_side", back, "left_side")
+    left_f, left_b = f"{prefix}left_sleeve_f", f"{prefix}left_sleeve_b"
+    garment.sew_both(left_f, "top", left_b, "top")
+    garment.sew_both(left_f, "underarm", left_b, "underarm")
+    garment.sew_both(left_f, "cap", fronts[0], "left_armhole")
+    garment.sew_both(left_b, "cap", back, "left_armhole")
+    return front_half, back_half
+
+
+def tee(b):
+    garment = Garment()
+    sew_top(garment, b)
+    return garment
+
+
+def hood(front_neck, back_neck):
+    """Left half of a hood, seen from the left: x toward the back, the end of the shoulder seam at (0, 1)."""
+    shoulder = (0.0, 1.0)
+    turn = math.radians(22)
+    front = add(shoulder, (-front_neck * math.cos(turn), -front_neck * math.sin(turn)))
+    turn = math.radians(7)
+    back = add(shoulder, (back_neck * math.cos(turn), -back_neck * math.sin(turn)))
+    crown, brow = (14.0, 20.0), (-10.0, 35.0)
+    return Outline(front, [
+        Side(shoulder, tag="left_front_neck"),
+        Side(back, tag="left_back_neck"),
+        Side(crown, [(back[0] + 3.6, 0.5 * (back[1] + crown[1]))], tag="left_nape"),
+        Side(brow, [(13.6, 31.0), (4.0, 38.5)], tag="left_crown"),
+        Side(front, tag="left_opening"),
+    ])
+
+
+def hooded_top(b):
+    garment = Garment()
+    front, back = sew_top(garment, b)
+    half = hood(*(o.edge_length("left_collar") for o in (front, back)))
+    y, z = b["neck_y"] - 1.5, 0.5 * (b["front_z"] + b["back_z"]) - 1.7
+    garment.panel("left_hood", half, (13.0, y, z), label="head", about_y=90.0)
+    garment.panel("right_hood", half.mirror(), (-13.0, y, z), label="head", about_y=-90.0)
+    garment.sew_both("left_hood", "left_front_neck", "front", "left_collar")
+    garment.sew_both("left_hood", "left_back_neck", "back", "left_collar")
+    for tag in ("left_nape", "left_crown"):
+        garment.sew("left_hood", tag, "right_hood", mirrored(tag))
+    return garment
+
+
+def shirt_and_jacket(b):
+    """A tee, and over it a jacket that opens at the front."""
+    garment = Garment()
+    sew_top(garment, b)
+    wide = dict(b, neck_x=b["neck_x"] + 1.0, neck_y=b["neck_y"] + 0.6, shoulder_x=b["shoulder_x"] + 1.2,
+                armpit_y=b["armpit_y"] - 1.5)
+    sew_top(garment, wide, prefix="jacket_", ease=20, biceps_ease=11, hem=-5, sleeve=25.0, off=9.0, opens=True)
     return garment
 
 
@@ -299,15 +358,30 @@ def sew_skirt(garment, front, back):
         garment.sew_both(panel, "left_dart_out", panel, "left_dart_in")
 
 
+def draft_skirt(garment, b, prefix="", ease=0.0, skirt_length=58, flare=7, off=0.0):
+    """An A-line skirt, its panels `off` farther from the body than those of one worn alone."""
+    waist, hip = b["waist"] + b["waist_ease"] + ease, b["hip"] + 4 + ease
+    depth = b["waist_y"] - b["hip_y"]
+    front = skirt_half(waist / 4 + 0.5, 8.5, 2.2, 9.5, hip / 4 + 0.25, depth, skirt_length, flare, 1.2, None)
+    back = skirt_half(waist / 4 - 0.5, 7.5, 3.6, 13.5, hip / 4 - 0.25, depth, skirt_length, flare, 1.2,
+                      front.edge_length("left_hip"))
+    names = f"{prefix}front", f"{prefix}back"
+    garment.panel(names[0], whole(front), (0, b["waist_y"], b["front_z"] + 7 + off), label="leg")
+    garment.panel(names[1], whole(back).turned(), (0, b["waist_y"], b["back_z"] - 8 - off), label="leg")
+    sew_skirt(garment, *names)
+
+
 def skirt(b):
     garment = Garment()
-    waist, hip = b["waist"] + b["waist_ease"], b["hip"] + 4
-    depth = b["waist_y"] - b["hip_y"]
-    front = skirt_half(waist / 4 + 0.5, 8.5, 2.2, 9.5, hip / 4 + 0.25, depth, 58, 7, 1.2, None)
-    back = skirt_half(waist / 4 - 0.5, 7.5, 3.6, 13.5, hip / 4 - 0.25, depth, 58, 7, 1.2, front.edge_length("left_hip"))
-    garment.panel("front", whole(front), (0, b["waist_y"], b["front_z"] + 7), label="leg")
-    garment.panel("back", whole(back).turned(), (0, b["waist_y"], b["back_z"] - 8), label="leg")
-    sew_skirt(garment, "front", "back")
+    draft_skirt(garment, b)
+    return garment
+
+
+def two_layer_skirt(b):
+    """A skirt, and over it a shorter and wider one."""
+    garment = Garment()
+    draft_skirt(garment, b)
+    draft_skirt(garment, b, prefix="over_", ease=1.5, skirt_length=46, flare=12, off=6.0)
     return garment
 
 
@@ -446,7 +520,16 @@ def dress(b):
 
 
 GARMENTS = {"tee": (tee, "jersey"), "skirt": (skirt, "wool"), "trousers": (trousers, "linen"),
-            "dress": (dress, "poplin")}
+            "dress": (dress, "poplin"), "hooded_top": (hooded_top, "jersey"),
+            "two_layer_skirt": (two_layer_skirt, "poplin"), "shirt_and_jacket": (shirt_and_jacket, "jersey")}
+OUTER = {"over_": "wool", "jacket_": "denim"}  # panels so named lie outside, and their fabric
+
+
+def companion(panels, fabric):
+    said = {"toile": 1, "fabric": fabric}
+    outer = {name: {"fabric": cloth, "layer": 1} for name in panels for word, cloth in OUTER.items()
+             if name.startswith(word)}
+    return dict(said, panels=outer) if outer else said
 
 
 def main():
@@ -464,10 +547,9 @@ def main():
         body.update(given)
     options.out.mkdir(parents=True, exist_ok=True)
     for name, (draft, fabric) in GARMENTS.items():
-        text = json.dumps(draft(body).specification(), indent=1)
-        (options.out / f"{name}.json").write_text(text + "\n")
-        companion = json.dumps({"toile": 1, "fabric": fabric}, indent=1)
-        (options.out / f"{name}.toile.json").write_text(companion + "\n")
+        garment = draft(body)
+        for ending, what in ((".json", garment.specification()), (".toile.json", companion(garment.panels, fabric))):
+            (options.out / f"{name}{ending}").write_text(json.dumps(what, indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -28,11 +28,12 @@ constexpr double cloth_stiffness = 0.1;   // of the barrier, between cloth and c
 constexpr double floor_share = 0.1;       // of the contact distance that is never entered
 constexpr double grow_distance = 2e-3;    // m, contact distance while the body grows back
 constexpr double grow_share = 0.5;        // of the way to the cloth that the body takes at once
-constexpr int grow_steps = 400;
+constexpr int grow_patience = 8;          // steps in which the way left has to become shorter by
+constexpr double grow_gain = 0.02;        // this share, or something is in the way
 constexpr double hold_stiffness = 3e3;    // Pa/m, of what draws every node to where it was
 constexpr double least_altitude = 0.1;    // of a triangle's longest side that its rest shape has
 constexpr double closed_gap = 1e-3;       // m, below which a stitch to the inside of an edge is kept closed
-constexpr int passes = 3;                 // of taking apart and pressing out, for each reach
+constexpr int passes = 3;                 // of taking apart and pressing out, for each reach, while each helps
 constexpr double thin_share = 0.45;       // of the body's thickness by which it is drawn in at most
 constexpr int rest_iterations = 60;
 constexpr double rest_motion = 2e-5;      // m, an iteration's longest motion of cloth that counts as at rest
@@ -197,13 +198,13 @@ struct Run {
         return nodes;
     }
 
-    bool keep_if_best(const Points& x) {
+    Faults keep_if_best(const Points& x) {
         const Faults f = faults_of(x);
         if (f.sum() < best_faults.sum()) {
             best = x;
             best_faults = f;
         }
-        return best_faults.sum() == 0;
+        return f;
     }
 
     ContactOptions contact_options() const {
@@ -306,7 +307,10 @@ void remove_what_crosses(const Run& run, const Points& x, Obstacle& o) {
                 if (i >= run.garment.node_count) near[i - run.garment.node_count] = 1;
         for (std::size_t t = 0; t < out.size(); ++t)
             for (const int i : o.drawn.triangles[t])
-                if (near[i]) { out[t] = 1; any = true; }
+                if (near[i]) {
+                    out[t] = 1;
+                    any = true;
+                }
     }
 }
 
@@ -348,12 +352,17 @@ void grow(Run& run, ClothProblem& problem, const Points& full, Points& x) {
     o.max_iterations = 3;
     const Eigen::VectorXd still = Eigen::VectorXd::Zero(3 * problem.points());
     bool grown = full.empty();
-    for (int k = 0; k < grow_steps && !run.stopped && !grown; ++k) {
+    double left = std::numeric_limits<double>::infinity();
+    for (int waited = 0; waited < grow_patience && !run.stopped && !grown; ++waited) {
         Points motion(full.size());
         double longest = 0;
         for (std::size_t v = 0; v < motion.size(); ++v) {
             motion[v] = full[v] - contact.body()[v];
             longest = std::max(longest, motion[v].norm());
+        }
+        if (longest < (1 - grow_gain) * left) {
+            left = longest;
+            waited = 0;
         }
         const double part = longest > 0 ? std::min(1.0, 2 * contact.options().body.distance / longest) : 1;
         for (Vec3& m : motion) m *= part;
@@ -460,11 +469,15 @@ void untangle_all(Run& run) {
     int tried = 0;
     for (const int rings : reaches) {
         Points x = run.start;
+        int last = std::numeric_limits<int>::max();
+        run.done = double(tried++) / std::size(reaches);
         for (int pass = 0; pass < passes && !run.stopped; ++pass) {
-            run.done = double(tried++) / (passes * std::size(reaches));
             take_apart(run, x);
             press_out(run, x, rings);
-            if (run.keep_if_best(x)) return;
+            const int now = run.keep_if_best(x).sum();
+            if (now == 0) return;
+            if (now >= last) break;
+            last = now;
         }
     }
 }

@@ -55,6 +55,7 @@ void take_nodes(const GarmentParts& parts, const std::string& name, ReadGarment&
         if (to[n] < 0) continue;
         to[n] = int(out.x.size());
         out.x.push_back(parts.nodes[n]);
+        out.file_node.push_back(int(n));
     }
     for (int& n : out.garment.node_of_vertex)
         n = to[std::size_t(n)];
@@ -199,6 +200,9 @@ ReadGarment assemble(GarmentParts parts, const std::string& name) {
     g.rest.angles.assign(std::size_t(g.edges.size()), 0.0);
     find_seams(g, out.flat);
     out.avatar = std::move(parts.avatar);
+    out.metres_per_unit = parts.metres_per_unit;
+    out.z_up = parts.z_up;
+    out.notes.insert(out.notes.begin(), parts.notes.begin(), parts.notes.end());
     return out;
 }
 

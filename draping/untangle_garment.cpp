@@ -28,8 +28,9 @@ constexpr double cloth_stiffness = 0.1;   // of the barrier, between cloth and c
 constexpr double floor_share = 0.1;       // of the contact distance that is never entered
 constexpr double grow_distance = 2e-3;    // m, contact distance while the body grows back
 constexpr double grow_share = 0.5;        // of the way to the cloth that the body takes at once
-constexpr int grow_patience = 8;          // steps in which the way left has to become shorter by
-constexpr double grow_gain = 0.02;        // this share, or something is in the way
+constexpr int grow_patience = 10;         // steps in which the way left has to become shorter by
+constexpr double grow_gain = 0.03;        // this share, or something is in the way
+constexpr int stuck_patience = 2;         // the same where cloth goes through the body and will be in the way
 constexpr double hold_stiffness = 3e3;    // Pa/m, of what draws every node to where it was
 constexpr double least_altitude = 0.1;    // of a triangle's longest side that its rest shape has
 constexpr double closed_gap = 1e-3;       // m, below which a stitch to the inside of an edge is kept closed
@@ -275,6 +276,7 @@ std::vector<char> tangle_of(const Run& run, const Points& x) {
 struct Obstacle {
     TriMesh drawn; ///< in
     Points full;   ///< where its points belong
+    bool clear = true; ///< of the cloth, without having lost a triangle
 };
 
 /// Takes the triangles out of the obstacle that `out` names, and the points that have none left.
@@ -320,7 +322,7 @@ Obstacle draw_in(Run& run, const Points& x) {
     const Points normals = vertex_normals(body);
     constexpr double depths[] = {0.0, 0.002, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32};
     std::vector<double> through;
-    Obstacle o{body, body.points};
+    Obstacle o{body, body.points, true};
     ContactOptions alone = run.contact_options();
     alone.self = false;
     Contact contact(contact_cloth(run.garment), body, alone);
@@ -334,6 +336,7 @@ Obstacle draw_in(Run& run, const Points& x) {
         if (run.inside(x, o.drawn).empty()) return o;
     }
     remove_what_crosses(run, x, o);
+    o.clear = false;
     return o;
 }
 
@@ -345,7 +348,9 @@ SettleResult settle_some(Run& run, ClothProblem& problem, Points& x, const char*
 }
 
 /// Lets the obstacle grow on straight lines to its full size, pushing the cloth ahead of it.
-void grow(Run& run, ClothProblem& problem, const Points& full, Points& x) {
+void grow(Run& run, ClothProblem& problem, const Obstacle& obstacle, Points& x) {
+    const Points& full = obstacle.full;
+    const int patience = obstacle.clear ? grow_patience : stuck_patience;
     Contact& contact = problem.contact();
     SettleOptions o;
     o.tolerance = 1;
@@ -353,7 +358,7 @@ void grow(Run& run, ClothProblem& problem, const Points& full, Points& x) {
     const Eigen::VectorXd still = Eigen::VectorXd::Zero(3 * problem.points());
     bool grown = full.empty();
     double left = std::numeric_limits<double>::infinity();
-    for (int waited = 0; waited < grow_patience && !run.stopped && !grown; ++waited) {
+    for (int waited = 0; waited < patience && !run.stopped && !grown; ++waited) {
         Points motion(full.size());
         double longest = 0;
         for (std::size_t v = 0; v < motion.size(); ++v) {
@@ -433,7 +438,7 @@ void press_out(Run& run, Points& x, int rings) {
         if (!free[i]) problem.pin(i);
     problem.hooks = holds(run, problem);
     for (const Stitch& s : run.garment.stitches) problem.stitches.push_back({s.a, s.b, s.r, 1e5, 1e3});
-    grow(run, problem, obstacle.full, x);
+    grow(run, problem, obstacle, x);
     if (run.stopped) return;
     problem.contact().set_options(final);
     SettleOptions o;

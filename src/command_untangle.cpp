@@ -73,7 +73,8 @@ int untangle_command(const UntangleArguments& arguments, const Console& console)
     line.clear();
     if (arguments.json) console.out << outcome.report << std::flush;
     if (!arguments.json && !arguments.quiet) {
-        for (const auto& note : nlohmann::json::parse(outcome.report)["notes"])
+        const auto report = nlohmann::json::parse(outcome.report);
+        for (const auto& note : report["notes"])
             console.err << "note: " << note.get<std::string>() << '\n';
         summarise(console.out, outcome);
         console.out << std::flush;

@@ -26,12 +26,6 @@ Untangling untangled(const Cloth& c, const TriMesh& body) {
     u.before = inspect(c.garment, c.x, body);
     u.result = untangle_garment(c.garment, c.x, body);
     u.after = inspect(c.garment, u.result.x, body);
-    WARN(u.before.intersections.cloth_avatar
-         << " + " << u.before.intersections.cloth_cloth << " pairs, " << u.before.inside.nodes << " inside: now "
-         << u.after.intersections.cloth_avatar << " + " << u.after.intersections.cloth_cloth << ", " << u.after.inside.nodes
-         << "; moved " << u.result.change.moved << " of " << c.x.size() << " by up to " << 1e3 * u.result.change.largest
-         << " mm, edges by up to " << 100 * u.result.change.edge_largest << " %, " << 100 * u.result.change.edge_mean
-         << " % in the mean");
     return u;
 }
 
@@ -55,7 +49,7 @@ TEST_CASE("two sheets that cross", "[untangle_garment]") {
     TriMesh other = test::grid(25, 25, 0.0097);
     for (Vec3& p : other.points) p.z() = 0.02 - 0.15 * p.x() + 0.03 * p.y();
     test::append(mesh, other);
-    check_clear(untangled(cloth_of(mesh), {}), 0.04, 1, 0.05);
+    check_clear(untangled(cloth_of(mesh), {}), 0.02, 0.01, 0.001);
 }
 
 TEST_CASE("a sleeve through a part of a torso", "[untangle_garment]") {
@@ -63,7 +57,7 @@ TEST_CASE("a sleeve through a part of a torso", "[untangle_garment]") {
     TriMesh sleeve = test::tube(0.06, 0.3, 24, 20);
     for (Vec3& p : sleeve.points) p = Vec3(0.17 + p.y(), 0.25 + p.x(), p.z() + 0.003);
     test::append(mesh, sleeve); // its end is 3 cm and more in the torso
-    check_clear(untangled(cloth_of(mesh), {}), 0.1, 1, 0.05);
+    check_clear(untangled(cloth_of(mesh), {}), 0.06, 0.1, 0.005);
 }
 
 TEST_CASE("a fold pushed through itself", "[untangle_garment]") {
@@ -79,7 +73,7 @@ TEST_CASE("a fold pushed through itself", "[untangle_garment]") {
         else
             p = Vec3(0.27 - (s - 0.27 - EIGEN_PI * r), p.y(), 2 * r - dent);
     }
-    check_clear(untangled(cloth_of(mesh), {}), 0.05, 1, 0.05);
+    check_clear(untangled(cloth_of(mesh), {}), 0.03, 0.1, 0.005);
 }
 
 TEST_CASE("a tube pushed 5 mm into a sphere", "[untangle_garment]") {
@@ -89,7 +83,7 @@ TEST_CASE("a tube pushed 5 mm into a sphere", "[untangle_garment]") {
     const Untangling u = untangled(cloth_of(mesh), body);
     CHECK(u.before.inside.nodes > 100);
     CHECK(u.before.inside.depth == Approx(0.005).epsilon(0.2));
-    check_clear(u, 0.01, 0.3, 0.05);
+    check_clear(u, 0.008, 0.1, 0.02);
     CHECK(u.after.clearance > 0.04e-3);
 }
 
@@ -102,7 +96,7 @@ TEST_CASE("a corner deep in a body and cloth crossing itself elsewhere", "[untan
     test::append(mesh, other);
     const Untangling u = untangled(cloth_of(mesh), body);
     CHECK(u.before.inside.depth > 0.05);
-    check_clear(u, 0.15, 2, 0.1);
+    check_clear(u, 0.12, 0.2, 0.01);
 }
 
 TEST_CASE("a garment that crosses nothing comes back as it is", "[untangle_garment]") {
@@ -133,7 +127,7 @@ TEST_CASE("cloth far from what crosses stays to the bit, and threads change noth
 
 TEST_CASE("what cannot be undone is said, and the best state returned", "[untangle_garment]") {
     const TriMesh body = test::ellipsoid({0.1, 0.1, 0.1}, 20, 15);
-    SECTION("a sheet pinned between: it goes right through the middle of the body") {
+    SECTION("a sheet right through the middle of the body") {
         TriMesh mesh = test::grid(40, 40, 0.01);
         for (Vec3& p : mesh.points) p -= Vec3(0.2, 0.2, 0);
         const Untangling u = untangled(cloth_of(mesh), body);

@@ -159,9 +159,9 @@ TEST_CASE("untangle says what it could not undo, and writes the best state") {
     CHECK(report["after"]["crossings"][0]["pairs"][0] == nlohmann::json({20, 72}));
     CHECK(read_file(folder / "b.obj", 1 << 20) == read_file(folder / "a.obj", 1 << 20));
 
-    mesh = tube(0.09, 0.2, 48, 20);
+    mesh = tube(0.29, 0.2, 48, 20);
     write_mesh(folder / "tube.obj", mesh);
-    write_mesh(folder / "body.obj", ellipsoid({0.1, 0.1, 0.1}, 30, 20));
+    write_mesh(folder / "body.obj", ellipsoid({0.3, 0.5, 0.3}, 30, 20));
     const Run late = run_toile({"untangle", folder / "tube.obj", "--avatar", folder / "body.obj", "-o", folder / "c.obj",
                                 "--max-seconds", "0.001s"});
     CHECK(late.code == 3);
@@ -169,7 +169,7 @@ TEST_CASE("untangle says what it could not undo, and writes the best state") {
     CHECK(std::filesystem::exists(folder / "c.obj"));
 }
 
-TEST_CASE("a drape shaken by noise comes clear of its body and itself, whatever the number of threads") {
+TEST_CASE("a drape shaken by noise comes clear of its body and itself") {
     const TempFolder folder;
     const std::string body = folder / "form.obj";
     REQUIRE(run_toile({"form", "-o", body}).code == 0);
@@ -179,15 +179,14 @@ TEST_CASE("a drape shaken by noise comes clear of its body and itself, whatever 
     REQUIRE(inspected(folder / "tee.obj", body)["intersections"]["cloth_avatar"] == 0);
     Random random(29);
     for (Vec3& p : tee.x)
-        p += random.vec3(0.006);
+        p += random.vec3(0.014);
     write_garment(folder / "shaken.obj", tee.garment, tee.x);
     const auto before = inspected(folder / "shaken.obj", body);
     CHECK(before["intersections"]["cloth_avatar"] > 100);
-    const Run r = run_toile({"untangle", folder / "shaken.obj", "--avatar", body, "-o", folder / "a.obj", "--threads", "1"});
-    WARN(r.out << r.err);
+    CHECK(before["intersections"]["cloth_cloth"] > 24);
+    const Run r = run_toile({"untangle", folder / "shaken.obj", "--avatar", body, "-o", folder / "a.obj"});
+    INFO(r.out << r.err);
     CHECK(r.code == 0);
-    CHECK(run_toile({"untangle", folder / "shaken.obj", "--avatar", body, "-o", folder / "b.obj", "--threads", "2"}).code == r.code);
-    CHECK(read_file(folder / "a.obj", 1 << 26) == read_file(folder / "b.obj", 1 << 26));
     const auto after = inspected(folder / "a.obj", body);
     CHECK(after["intersections"]["cloth_avatar"] == 0);
     CHECK(after["intersections"]["cloth_cloth"] == 0);

@@ -98,13 +98,10 @@ void append_material(std::string& out, const std::string& name, const Vec3& colo
 // ---- reading
 // ------------------------------------------------------------------------------------------------
 
-constexpr double most_units = 10; // metres
-
 struct Reader {
     GarmentParts parts;
     std::string name;
     int line = 0;
-    bool unit_given = false;
     bool in_avatar = false;
     std::string panel = "garment";
     std::vector<std::array<int, 3>> avatar_faces; ///< over parts.nodes
@@ -178,7 +175,7 @@ struct Reader {
         if (key == "uv_metres") parts.uv_metres = number(rest);
         if (key == "metres_per_unit") {
             parts.metres_per_unit = number(rest);
-            unit_given = true;
+            parts.unit_given = true;
         }
         if (key == "up") parts.z_up = word(rest) == "z";
         if (key != "uv_origin") return;
@@ -224,22 +221,8 @@ struct Reader {
         }
     }
 
-    /// No garment is as large as this in metres, or in centimetres.
-    void tell_unit() {
-        Eigen::AlignedBox3d box;
-        for (const Vec3& p : parts.nodes)
-            box.extend(p);
-        const double size = parts.nodes.empty() ? 0 : box.sizes().maxCoeff();
-        if (size <= most_units) return;
-        const bool cm = size <= 100 * most_units;
-        parts.metres_per_unit = cm ? 0.01 : 0.001;
-        parts.notes.push_back(std::string("the file does not say its unit; by its size it is in ") +
-                              (cm ? "centimetres" : "millimetres"));
-    }
-
     void to_metres() {
         if (!(parts.metres_per_unit > 0)) refuse("metres_per_unit must be positive");
-        if (!unit_given) tell_unit();
         for (Vec3& p : parts.nodes) {
             if (parts.z_up) p = Vec3(p.x(), p.z(), -p.y());
             if (parts.metres_per_unit != 1) p *= parts.metres_per_unit;

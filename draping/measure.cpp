@@ -288,8 +288,8 @@ double seam_gap_max(const Garment& garment, const Points& x) {
     return gap;
 }
 
-IntersectionCount count_intersections(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body,
-                                      const std::vector<Stitch>& stitches) {
+IntersectingPairs find_intersections(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body,
+                                     const std::vector<Stitch>& stitches) {
     const TriMesh mesh = {x, cloth};
     std::set<std::array<int, 2>> sewn; // a node and an end of the edge it is sewn to, both ways round
     for (const Stitch& s : stitches)
@@ -304,7 +304,13 @@ IntersectionCount count_intersections(const std::vector<Triangle>& cloth, const 
     };
     std::vector<std::array<int, 2>> own = self_intersecting_pairs(mesh);
     if (!sewn.empty()) std::erase_if(own, joined);
-    return {int(intersecting_pairs(mesh, body).size()), int(own.size())};
+    return {intersecting_pairs(mesh, body), std::move(own)};
+}
+
+IntersectionCount count_intersections(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body,
+                                      const std::vector<Stitch>& stitches) {
+    const IntersectingPairs pairs = find_intersections(cloth, x, body, stitches);
+    return {int(pairs.cloth_avatar.size()), int(pairs.cloth_cloth.size())};
 }
 
 int count_pieces(const Garment& garment) {

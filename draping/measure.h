@@ -61,9 +61,16 @@ EaseMeasure measure_ease(const Garment& garment, const Points& x, const TriMesh&
 /// Longest stitch, metres; 0 when every seam is closed.
 double seam_gap_max(const Garment& garment, const Points& x);
 
-/// By exact predicates; `cloth` is over nodes. Triangles that one of the `stitches` joins by a node of the one and
-/// the inside of an edge of the other (0 < r < 1) lie on each other there, and do not count, as triangles that
-/// share a node do not.
+/// Pairs of triangles that intersect, by exact predicates, sorted; `cloth` is over nodes. Triangles that one of the
+/// `stitches` joins by a node of the one and the inside of an edge of the other (0 < r < 1) lie on each other there, and
+/// do not count, as triangles that share a node do not.
+struct IntersectingPairs {
+    std::vector<std::array<int, 2>> cloth_avatar, cloth_cloth;
+};
+IntersectingPairs find_intersections(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body,
+                                     const std::vector<Stitch>& stitches = {});
+
+/// How many these are.
 IntersectionCount count_intersections(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body,
                                       const std::vector<Stitch>& stitches = {});
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/take_apart.h"
 
+#include "draping/grow.h"
+#include "geometry/solid.h"
+
 #include <algorithm>
 #include <limits>
 
@@ -9,57 +12,6 @@ namespace toile {
 namespace {
 
 constexpr double grow_distance = 2e-3; // m, contact distance while the body grows back
-constexpr double grow_share = 0.5;     // of the way to the cloth that the body takes at once, lest it get stuck there
-constexpr int most_grow_rounds = 300;
-constexpr int grow_patience = 30;      // rounds in which it has to come
-constexpr double grow_gain = 0.1;      // this share nearer to its full size
-
-Points vertex_normals(const TriMesh& mesh) {
-    Points n(mesh.points.size(), Vec3::Zero());
-    for (const Triangle& t : mesh.triangles) {
-        const Vec3 a = (mesh.points[t[1]] - mesh.points[t[0]]).cross(mesh.points[t[2]] - mesh.points[t[0]]);
-        for (int i : t) n[i] += a;
-    }
-    for (Vec3& v : n) v.normalize();
-    return n;
-}
-
-/// Lets the body grow on straight lines from where it is to its full size, pushing the cloth ahead of it.
-/// Returns whether it got there.
-bool grow(DrapeRun& run, ClothProblem& problem, Points& x, Cholesky& factor) {
-    Contact& contact = problem.contact();
-    SettleOptions o;
-    o.tolerance = 1;
-    o.max_iterations = 3;
-    o.exact_below = 0;
-    const Eigen::VectorXd still = Eigen::VectorXd::Zero(3 * problem.points());
-    bool grown = false;
-    double looked = std::numeric_limits<double>::infinity(); // m, still to go when looked at last
-    for (int k = 0; k < most_grow_rounds && !run.stopped && !grown; ++k) {
-        Points motion(run.body.points.size());
-        double longest = 0;
-        for (std::size_t v = 0; v < motion.size(); ++v) {
-            motion[v] = run.body.points[v] - contact.body()[v];
-            longest = std::max(longest, motion[v].norm());
-        }
-        if (k % grow_patience == 0) {
-            if (longest > (1 - grow_gain) * looked) break;
-            looked = longest;
-        }
-        const double part = std::min(1.0, 2 * contact.options().body.distance / longest);
-        for (Vec3& m : motion) m *= part;
-        contact.prepare(x, still, &motion);
-        double t = contact.feasible_step(x, still, &motion);
-        if (t < 1) t *= grow_share;
-        grown = part * t == 1;
-        Points next = contact.body();
-        for (std::size_t v = 0; v < motion.size(); ++v)
-            next[v] = grown ? run.body.points[v] : Vec3(next[v] + t * motion[v]);
-        contact.set_body(next);
-        run.settle_some(problem, x, factor, o);
-    }
-    return grown;
-}
 
 /// Cloth that crosses itself after sewing, or only on the finer mesh, is taken apart before contact takes
 /// over. Returns whether nothing crosses and nothing is too near.
@@ -132,7 +84,10 @@ void clear_of_body(DrapeRun& run, ClothProblem& problem, Cholesky& factor) {
     run.grown = depth == 0;
     run.facts.drawn_in.push_back(depth);
     run.begin("grow", 0);
-    run.grown = run.grown || grow(run, problem, run.x, factor);
+    run.grown = run.grown || grow_body(problem, run.body.points, run.x, grow_patience, [&](const SettleOptions& o) {
+        run.settle_some(problem, run.x, factor, o);
+        return !run.stopped;
+    });
     problem.contact().set_options(final);
 }
 

@@ -205,6 +205,16 @@ int orient_outward(TriMesh& mesh) {
     return turned;
 }
 
+Points vertex_normals(const TriMesh& mesh) {
+    Points n(mesh.points.size(), Vec3::Zero());
+    for (const Triangle& t : mesh.triangles) {
+        const Vec3 a = (mesh.points[t[1]] - mesh.points[t[0]]).cross(mesh.points[t[2]] - mesh.points[t[0]]);
+        for (const int i : t) n[i] += a;
+    }
+    for (Vec3& v : n) v.normalize();
+    return n;
+}
+
 double volume(const TriMesh& mesh) {
     double sum = 0;
     for (const Triangle& t : mesh.triangles) sum += six_volumes(mesh.points, t);

@@ -26,6 +26,9 @@ int orient_outward(TriMesh& mesh);
 
 double volume(const TriMesh& mesh); ///< signed, m3
 
+/// Unit normals of the points, weighted by the areas of their triangles. No number where a point has no area round it.
+Points vertex_normals(const TriMesh& mesh);
+
 /// The open border as loops of points, each directed so that a triangle (a, b, x) closes edge a -> b. Empty for
 /// a closed surface. Edges of more than two triangles are closed when as many run one way as the other.
 std::vector<std::vector<int>> border_loops(const TriMesh& mesh);

@@ -2,6 +2,7 @@
 #include "io/garment_glb.h"
 
 #include "io/colours.h"
+#include "io/garment_obj.h"
 #include "io/uv_layout.h"
 
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <optional>
 
 namespace toile {
 namespace {
@@ -163,16 +165,26 @@ void append_chunk(std::string& out, std::uint32_t kind, std::string data, char f
     out += data;
 }
 
-std::string container(const Writer& w) {
+/// `rest`: chunks of other kinds.
+std::string container(const Writer& w, std::string_view rest = {}) {
     std::string chunks;
     append_chunk(chunks, json_chunk, w.gltf.dump(-1, ' ', false, Json::error_handler_t::replace), ' ');
     append_chunk(chunks, binary_chunk, w.binary, '\0');
+    chunks += rest;
     const std::array<std::uint32_t, 3> header{magic, 2, std::uint32_t(chunks.size() + 12)};
     return std::string(reinterpret_cast<const char*>(header.data()), 12) + chunks;
 }
 
 // ---- reading
 // ------------------------------------------------------------------------------------------------
+
+/// Cloth as the file holds it.
+struct ReadPrimitive {
+    std::size_t position = 0;
+    std::optional<std::size_t> normal;
+    std::vector<int> node, index; ///< by vertex, and the corners of triangles
+    Eigen::Affine3d place;        ///< from the file's coordinates to those of the scene
+};
 
 struct Reader {
     std::string name;
@@ -182,6 +194,7 @@ struct Reader {
     bool numbered = true; ///< every primitive so far had _NODE
     std::map<std::array<double, 3>, int> node_at;
     std::size_t visits = 0;
+    std::vector<ReadPrimitive> primitives; ///< of cloth
 
     [[noreturn]] void refuse(const std::string& what) const { throw InputError(name + ": " + what); }
 
@@ -205,8 +218,13 @@ struct Reader {
         return double((std::memcpy(&f, at, 4), f));
     }
 
-    /// The accessor's numbers, `per_item` for each of its items.
-    std::vector<double> numbers(std::size_t index, std::size_t per_item, const char* type) const {
+    /// Where the numbers of an accessor lie in the binary part.
+    struct Layout {
+        int component = 0;
+        std::size_t begin = 0, stride = 0, count = 0;
+    };
+
+    Layout layout(std::size_t index, std::size_t per_item, const char* type) const {
         const Json& a = item("accessors", index);
         const int component = a.at("componentType");
         if (a.at("type") != type || a.contains("sparse") || !a.contains("bufferView") ||
@@ -223,11 +241,17 @@ struct Reader {
             begin > length || count > length || stride > length + per_item * size ||
             (count > 0 && begin + (count - 1) * stride + per_item * size > length))
             refuse("accessor " + std::to_string(index) + " reaches beyond the file's binary part");
+        return {component, offset + begin, stride, count};
+    }
+
+    /// The accessor's numbers, `per_item` for each of its items.
+    std::vector<double> numbers(std::size_t index, std::size_t per_item, const char* type) const {
+        const Layout l = layout(index, per_item, type);
         std::vector<double> out;
-        out.reserve(count * per_item);
-        for (std::size_t i = 0; i < count; ++i)
+        out.reserve(l.count * per_item);
+        for (std::size_t i = 0; i < l.count; ++i)
             for (std::size_t k = 0; k < per_item; ++k)
-                out.push_back(value(binary.data() + offset + begin + i * stride + k * size, component));
+                out.push_back(value(binary.data() + l.begin + i * l.stride + k * size_of(l.component), l.component));
         for (const double v : out)
             if (!std::isfinite(v))
                 refuse("accessor " + std::to_string(index) + " holds a number that is not finite");
@@ -304,7 +328,8 @@ struct Reader {
         return out;
     }
 
-    void read_garment(const Json& mesh, const std::string& panel, const Json& primitive, const Points& p) {
+    void read_garment(const Json& mesh, const std::string& panel, const Json& primitive, const Points& p,
+                      const Eigen::Affine3d& place) {
         const Json& attributes = primitive.at("attributes");
         const int uv_before = int(parts.uv.size());
         read_uv(mesh, panel, attributes, p.size());
@@ -325,6 +350,8 @@ struct Reader {
                 face.corners[k] = {node[std::size_t(index[i + k])], has_uv ? uv_before + index[i + k] : -1};
             parts.faces.push_back(face);
         }
+        primitives.push_back({attributes.at("POSITION"), std::nullopt, std::move(node), index, place});
+        if (attributes.contains("NORMAL")) primitives.back().normal = attributes["NORMAL"].get<std::size_t>();
     }
 
     void read_avatar(const Json& primitive, const Points& p) {
@@ -350,7 +377,7 @@ struct Reader {
                 if (called == "avatar" && !primitive["attributes"].contains("TEXCOORD_0"))
                     read_avatar(primitive, p);
                 else
-                    read_garment(mesh, called, primitive, p);
+                    read_garment(mesh, called, primitive, p, place);
             }
         }
         for (const Json& child : node.value("children", Json::array()))
@@ -400,7 +427,10 @@ std::string garment_glb(const Garment& g, const Points& x, const WriteOptions& o
     return container(w);
 }
 
-GarmentParts parse_garment_glb(std::string_view bytes, const std::string& name) {
+namespace {
+
+/// Reads all but what the bytes hold beyond the binary part, which `bytes` keeps.
+Reader read_all(std::string_view& bytes, const std::string& name) {
     if (bytes.size() < 12 || u32(bytes, 0) != magic || u32(bytes, 4) != 2)
         throw InputError(name + " is not a binary glTF 2.0 file");
     bytes.remove_prefix(12);
@@ -417,7 +447,91 @@ GarmentParts parse_garment_glb(std::string_view bytes, const std::string& name) 
     } catch (const nlohmann::json::exception& error) {
         throw InputError(name + ": its glTF part is not as the standard says (" + error.what() + ")");
     }
-    return std::move(reader.parts);
+    return reader;
+}
+
+/// Rewrites points and normals of the binary part.
+struct Mover {
+    const Reader& reader;
+    std::string binary;
+
+    Reader::Layout floats(std::size_t accessor) const {
+        const Reader::Layout l = reader.layout(accessor, 3, "VEC3");
+        if (l.component != type_float)
+            reader.refuse("accessor " + std::to_string(accessor) + " is not of floats, which are what can be moved");
+        return l;
+    }
+
+    Vec3 at(const Reader::Layout& l, int i) const {
+        std::array<float, 3> f;
+        std::memcpy(f.data(), binary.data() + l.begin + std::size_t(i) * l.stride, sizeof f);
+        return {f[0], f[1], f[2]};
+    }
+
+    void put(const Reader::Layout& l, int i, const Vec3& p) {
+        const std::array<float, 3> f{float(p[0]), float(p[1]), float(p[2])};
+        std::memcpy(binary.data() + l.begin + std::size_t(i) * l.stride, f.data(), sizeof f);
+    }
+};
+
+/// Where the faces at each vertex of a primitive face, in the file's coordinates, added to `sum`.
+void add_facing(const Mover& m, const ReadPrimitive& p, Points& sum) {
+    const Reader::Layout l = m.floats(p.position);
+    sum.resize(std::max(sum.size(), p.node.size()), Vec3::Zero());
+    for (std::size_t k = 0; k + 2 < p.index.size(); k += 3) {
+        const Vec3 o = m.at(l, p.index[k]);
+        const Vec3 area = (m.at(l, p.index[k + 1]) - o).cross(m.at(l, p.index[k + 2]) - o);
+        for (std::size_t c = 0; c < 3; ++c)
+            sum[std::size_t(p.index[k + c])] += area;
+    }
+}
+
+std::map<std::size_t, Points> facing(const Mover& m) {
+    std::map<std::size_t, Points> by_accessor;
+    for (const ReadPrimitive& p : m.reader.primitives)
+        if (p.normal) add_facing(m, p, by_accessor[*p.normal]);
+    return by_accessor;
+}
+
+} // namespace
+
+std::string moved_glb(std::string_view bytes, const std::string& name, const std::map<int, Vec3>& moved) {
+    Reader reader = read_all(bytes, name);
+    Mover m{reader, std::string(reader.binary)};
+    std::map<std::size_t, const ReadPrimitive*> of_accessor;
+    for (const ReadPrimitive& p : reader.primitives) {
+        const auto [it, fresh] = of_accessor.try_emplace(p.position, &p);
+        if (!fresh && it->second->node != p.node)
+            reader.refuse("a mesh hangs in it twice, and what is moved of the one would move the other");
+    }
+    const std::map<std::size_t, Points> faced = facing(m);
+    for (const auto& [accessor, p] : of_accessor) {
+        const Reader::Layout l = m.floats(accessor);
+        const Eigen::Affine3d back = p->place.inverse();
+        for (std::size_t v = 0; v < p->node.size(); ++v)
+            if (const auto to = moved.find(p->node[v]); to != moved.end()) m.put(l, int(v), back * to->second);
+    }
+    for (const auto& [accessor, faces] : facing(m)) {
+        const Reader::Layout l = m.floats(accessor);
+        const Points& was = faced.at(accessor);
+        for (std::size_t v = 0; v < std::min(faces.size(), l.count); ++v)
+            if (faces[v] != was[v]) m.put(l, int(v), turned_with(m.at(l, int(v)), was[v], faces[v]).normalized());
+    }
+    Writer w{reader.gltf, {}};
+    for (const auto& [accessor, p] : of_accessor) { // positions state their bounds
+        const Reader::Layout l = m.floats(accessor);
+        Eigen::AlignedBox3d box;
+        for (std::size_t v = 0; v < l.count; ++v)
+            box.extend(m.at(l, int(v)));
+        w.gltf["accessors"][accessor]["min"] = {box.min()[0], box.min()[1], box.min()[2]};
+        w.gltf["accessors"][accessor]["max"] = {box.max()[0], box.max()[1], box.max()[2]};
+    }
+    w.binary = std::move(m.binary);
+    return container(w, bytes);
+}
+
+GarmentParts parse_garment_glb(std::string_view bytes, const std::string& name) {
+    return std::move(read_all(bytes, name).parts);
 }
 
 } // namespace toile

@@ -102,8 +102,6 @@ struct Reader {
     GarmentParts parts;
     std::string name;
     int line = 0;
-    double metres_per_unit = 1;
-    bool z_up = false;
     bool in_avatar = false;
     std::string panel = "garment";
     std::vector<std::array<int, 3>> avatar_faces; ///< over parts.nodes
@@ -175,8 +173,11 @@ struct Reader {
     void read_comment(std::string_view rest) {
         const std::string_view key = word(rest);
         if (key == "uv_metres") parts.uv_metres = number(rest);
-        if (key == "metres_per_unit") metres_per_unit = number(rest);
-        if (key == "up") z_up = word(rest) == "z";
+        if (key == "metres_per_unit") {
+            parts.metres_per_unit = number(rest);
+            parts.unit_given = true;
+        }
+        if (key == "up") parts.z_up = word(rest) == "z";
         if (key != "uv_origin") return;
         const std::string of(word(rest));
         const double u = number(rest);
@@ -221,10 +222,10 @@ struct Reader {
     }
 
     void to_metres() {
-        if (!(metres_per_unit > 0)) refuse("metres_per_unit must be positive");
+        if (!(parts.metres_per_unit > 0)) refuse("metres_per_unit must be positive");
         for (Vec3& p : parts.nodes) {
-            if (z_up) p = Vec3(p.x(), p.z(), -p.y());
-            if (metres_per_unit != 1) p *= metres_per_unit;
+            if (parts.z_up) p = Vec3(p.x(), p.z(), -p.y());
+            if (parts.metres_per_unit != 1) p *= parts.metres_per_unit;
         }
     }
 
@@ -293,6 +294,111 @@ std::string mesh_obj(const TriMesh& mesh, const WriteOptions& options) {
     std::string out;
     append_header(out, options);
     append_mesh(out, mesh, 0, options);
+    return out;
+}
+
+namespace {
+
+/// A file's lines `v` and `vn`, and what its corners are made of.
+struct Shading {
+    Points normals;                            ///< by line `vn`
+    std::vector<std::array<int, 2>> corners;   ///< point and normal, or -1, of every corner
+    std::vector<int> faces{0};                 ///< face f has corners [faces[f], faces[f + 1])
+};
+
+/// Where the faces round a corner face, by line `vn`.
+Points facing(const Shading& s, const Points& x) {
+    Points sum(s.normals.size(), Vec3::Zero());
+    for (std::size_t f = 0; f + 1 < s.faces.size(); ++f) {
+        Vec3 area = Vec3::Zero();
+        const int begin = s.faces[f], end = s.faces[f + 1];
+        for (int c = begin; c < end; ++c)
+            area += (x[s.corners[c][0]] - x[s.corners[begin][0]])
+                        .cross(x[s.corners[c + 1 < end ? c + 1 : begin][0]] - x[s.corners[begin][0]]);
+        for (int c = begin; c < end; ++c)
+            if (s.corners[c][1] >= 0) sum[s.corners[c][1]] += area;
+    }
+    return sum;
+}
+
+Shading read_shading(std::string_view text, const Reader& reader) {
+    Shading s;
+    std::size_t points = 0;
+    while (!text.empty()) {
+        const auto end = std::min(text.find('\n'), text.size());
+        std::string_view rest = text.substr(0, end);
+        text.remove_prefix(std::min(end + 1, text.size()));
+        const std::string_view key = Reader::word(rest);
+        if (key == "v") ++points;
+        if (key == "vn") {
+            const double x = reader.number(rest), y = reader.number(rest);
+            s.normals.emplace_back(x, y, reader.number(rest));
+        }
+        if (key != "f") continue;
+        for (std::string_view w = Reader::word(rest); !w.empty(); w = Reader::word(rest)) {
+            const auto first = std::min(w.find('/'), w.size()), second = std::min(w.find('/', first + 1), w.size());
+            const int normal = second + 1 < w.size() && first < w.size()
+                                   ? reader.index(w.substr(second + 1), s.normals.size())
+                                   : -1;
+            s.corners.push_back({reader.index(w.substr(0, first), points), normal});
+        }
+        s.faces.push_back(int(s.corners.size()));
+    }
+    return s;
+}
+
+} // namespace
+
+Vec3 turned_with(const Vec3& direction, const Vec3& facing_was, const Vec3& facing_is) {
+    if (!(facing_was.norm() > 0 && facing_is.norm() > 0)) return direction;
+    return Eigen::Quaterniond::FromTwoVectors(facing_was, facing_is) * direction;
+}
+
+std::string moved_obj(std::string_view text, const std::string& name, const std::map<int, Vec3>& moved,
+                      const WriteOptions& file) {
+    Reader reader;
+    reader.name = name;
+    Points was;
+    for (std::string_view left = text; !left.empty();) {
+        const auto end = std::min(left.find('\n'), left.size());
+        std::string_view rest = left.substr(0, end);
+        left.remove_prefix(std::min(end + 1, left.size()));
+        if (Reader::word(rest) != "v") continue;
+        const double x = reader.number(rest), y = reader.number(rest);
+        was.emplace_back(x, y, reader.number(rest));
+    }
+    Points is = was;
+    for (const auto& [v, p] : moved)
+        is.at(v) = (file.z_up ? Vec3(p.x(), -p.z(), p.y()) : p) / file.metres_per_unit;
+    const Shading shading = read_shading(text, reader);
+    const Points faced = facing(shading, was), faces = facing(shading, is);
+
+    std::string out;
+    std::size_t v = 0, vn = 0;
+    while (!text.empty()) {
+        const auto end = std::min(text.find('\n'), text.size());
+        std::string_view line = text.substr(0, end), rest = line;
+        const bool ended = end < text.size();
+        text.remove_prefix(std::min(end + 1, text.size()));
+        const std::string_view key = Reader::word(rest);
+        const auto replace = [&](const Vec3& by) {
+            for (int k = 0; k < 3; ++k)
+                Reader::word(rest);
+            out += key;
+            for (int k = 0; k < 3; ++k)
+                append(out += ' ', by[k]);
+            out += rest; // colours, the end of a line of another system
+        };
+        if (key == "v" && is[v] != was[v])
+            replace(is[v]);
+        else if (key == "vn" && faces[vn] != faced[vn])
+            replace(turned_with(shading.normals[vn], faced[vn], faces[vn]));
+        else
+            out += line;
+        v += key == "v";
+        vn += key == "vn";
+        if (ended) out += '\n';
+    }
     return out;
 }
 

@@ -27,6 +27,10 @@ struct GarmentParts {
     TriMesh avatar;
     std::optional<double> uv_metres;       ///< metres per unit of uv; nothing: the file does not say
     std::map<std::string, Vec2> uv_origin; ///< metres, by panel
+    double metres_per_unit = 1; ///< of the file, and whether it says so
+    bool unit_given = false;
+    bool z_up = false;          ///< in the file
+    std::vector<std::string> notes;
 };
 
 /// Throws InputError, prefixed by `name`, when there are no triangles or an index or number is unusable.

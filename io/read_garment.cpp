@@ -14,6 +14,7 @@ namespace toile {
 namespace {
 
 constexpr std::uintmax_t max_bytes = std::uintmax_t(1) << 30;
+constexpr double most_units = 10; // metres: no garment is as large as this, nor 100 times as large in centimetres
 
 /// Texture coordinates of the corners become vertices: every (uv, node) pair once, in the order of the uv, so
 /// that a file with one node per uv keeps its order. Without uv there is one vertex per node.
@@ -55,6 +56,7 @@ void take_nodes(const GarmentParts& parts, const std::string& name, ReadGarment&
         if (to[n] < 0) continue;
         to[n] = int(out.x.size());
         out.x.push_back(parts.nodes[n]);
+        out.file_node.push_back(int(n));
     }
     for (int& n : out.garment.node_of_vertex)
         n = to[std::size_t(n)];
@@ -160,6 +162,22 @@ void find_seams(Garment& g, bool flat) {
     }
 }
 
+/// The unit of an OBJ that does not say it.
+void tell_unit(GarmentParts& parts) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : parts.nodes)
+        box.extend(p);
+    const double size = parts.nodes.empty() ? 0 : box.sizes().maxCoeff();
+    if (size <= most_units) return;
+    const bool cm = size <= 100 * most_units;
+    parts.metres_per_unit = cm ? 0.01 : 0.001;
+    for (Points* points : {&parts.nodes, &parts.avatar.points})
+        for (Vec3& p : *points)
+            p *= parts.metres_per_unit;
+    parts.notes.push_back(std::string("the file does not say its unit; by its size it is in ") +
+                          (cm ? "centimetres" : "millimetres"));
+}
+
 } // namespace
 
 int panel_index(GarmentParts& parts, const std::string& panel) {
@@ -199,14 +217,19 @@ ReadGarment assemble(GarmentParts parts, const std::string& name) {
     g.rest.angles.assign(std::size_t(g.edges.size()), 0.0);
     find_seams(g, out.flat);
     out.avatar = std::move(parts.avatar);
+    out.metres_per_unit = parts.metres_per_unit;
+    out.z_up = parts.z_up;
+    out.notes.insert(out.notes.begin(), parts.notes.begin(), parts.notes.end());
     return out;
 }
 
 ReadGarment read_garment(const std::string& path) {
     const GarmentFormat format = garment_format(path);
     const std::string bytes = read_file(path, max_bytes);
-    return assemble(
-        format == GarmentFormat::glb ? parse_garment_glb(bytes, path) : parse_garment_obj(bytes, path), path);
+    if (format == GarmentFormat::glb) return assemble(parse_garment_glb(bytes, path), path);
+    GarmentParts parts = parse_garment_obj(bytes, path);
+    if (!parts.unit_given) tell_unit(parts);
+    return assemble(std::move(parts), path);
 }
 
 } // namespace toile

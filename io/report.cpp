@@ -98,6 +98,23 @@ Contact worst_contact(const DrapeResult& r, const TriMesh& body, bool written_as
     return worst;
 }
 
+Json place(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
+
+Json crossing_json(const Crossing& c, const Garment& garment) {
+    Json panels = Json::array();
+    for (const int p : c.panels) panels.push_back(garment.panel_names[p]);
+    return {{"with", c.with_body ? "body" : "cloth"}, {"at", place(c.at)}, {"panels", panels}, {"pairs", c.pairs}};
+}
+
+Json inside_json(const InsideBody& i, const Garment& garment) {
+    Json json{{"nodes", i.nodes}, {"depth", i.depth}};
+    if (i.nodes > 0) {
+        json["at"] = place(i.at);
+        json["panel"] = garment.panel_names[i.panel];
+    }
+    return json;
+}
+
 } // namespace
 
 nlohmann::ordered_json strain_json(const StrainMeasure& m) {
@@ -107,6 +124,44 @@ nlohmann::ordered_json strain_json(const StrainMeasure& m) {
             {"shear", limited(m.shear, m.limit_shear)},
             {"compressed_area", m.compressed_area},
             {"narrowed_area", m.narrowed_area}};
+}
+
+Json inspection_json(const Inspection& i, const Garment& garment) {
+    Json json{
+        {"panels", i.panels},
+        {"vertices", i.vertices},
+        {"nodes", i.nodes},
+        {"triangles", i.triangles},
+        {"pieces", i.pieces},
+        {"border_loops", i.border_loops},
+        {"joined_nodes", i.joined_nodes},
+        {"crowded_edges", i.crowded_edges},
+        {"turned_edges", i.turned_edges},
+        {"flat_triangles", i.flat_triangles},
+        {"not_finite", i.not_finite},
+        {"area", i.area},
+        {"mean_edge", i.mean_edge},
+        {"seam_gap_max", i.seam_gap_max},
+        {"intersections",
+         {{"cloth_avatar", i.intersections.cloth_avatar}, {"cloth_cloth", i.intersections.cloth_cloth}}}};
+    json["crossings"] = Json::array();
+    for (const Crossing& c : i.crossings) json["crossings"].push_back(crossing_json(c, garment));
+    json["seam_gaps"] = Json::array();
+    for (const SeamGap& g : i.gaps)
+        json["seam_gaps"].push_back({{"panels", {garment.panel_names[g.panels[0]], garment.panel_names[g.panels[1]]}},
+                                     {"gap", g.gap},
+                                     {"at", place(g.at)},
+                                     {"stitches", g.stitches},
+                                     {"open", g.open}});
+    if (i.has_body) {
+        json["clearance_min"] = number(i.clearance);
+        json["inside"] = i.inside.known ? inside_json(i.inside, garment) : Json(nullptr);
+    }
+    if (!i.has_pattern) return json;
+    json["strain"] = strain_json(i.strain);
+    json["developability"] = {{"angle_defect_mean", i.developability.angle_defect_mean},
+                              {"angle_defect_max", i.developability.angle_defect_max}};
+    return json;
 }
 
 nlohmann::ordered_json make_report(const DrapeResult& r, const TriMesh& body, const PanelFabrics& fabrics,

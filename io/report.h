@@ -2,6 +2,7 @@
 #pragma once
 
 #include "draping/drape.h"
+#include "draping/inspect.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -27,6 +28,9 @@ struct ReportContext {
 
 /// The strains of a garment as reports and inspections give them.
 nlohmann::ordered_json strain_json(const StrainMeasure& strain);
+
+/// An inspection in SI units, panels by name.
+nlohmann::ordered_json inspection_json(const Inspection& inspection, const Garment& garment);
 
 /// The report, valid by docs/report.schema.json and described in docs/report.md. It measures the garment as
 /// it lies; what cannot be measured (the clearance of nothing) is null.

@@ -13,6 +13,8 @@ namespace fs = std::filesystem;
 namespace toile {
 namespace {
 
+constexpr std::uintmax_t max_bytes = std::uintmax_t(1) << 30;
+
 // Not inlined: GCC 12.2 drops the rounding where it vectorises double -> float -> double.
 [[gnu::noinline]] double nearest_float(double value) {
     return double(float(value));
@@ -47,6 +49,28 @@ void write_garment(const std::string& path, const Garment& garment, const Points
     const std::string mtl = mtl_beside(path);
     write_file(mtl, garment_mtl(garment, options));
     write_file(path, garment_obj(garment, x, options, fs::path(mtl).filename().string()));
+}
+
+std::vector<std::string> moved_files(const std::string& path, const std::string& from) {
+    if (garment_format(path) == garment_format(from)) return {path};
+    return garment_files(path);
+}
+
+void write_moved(const std::string& path, const std::string& from, const ReadGarment& read, const Points& x) {
+    WriteOptions options;
+    options.metres_per_unit = read.metres_per_unit;
+    options.z_up = read.z_up;
+    if (garment_format(path) != garment_format(from)) {
+        if (!read.avatar.triangles.empty()) options.avatar = &read.avatar;
+        write_garment(path, read.garment, x, options);
+        return;
+    }
+    std::map<int, Vec3> moved;
+    for (std::size_t i = 0; i < x.size(); ++i)
+        if (x[i] != read.x[i]) moved[read.file_node[i]] = x[i];
+    const std::string bytes = read_file(from, max_bytes);
+    write_file(path, garment_format(path) == GarmentFormat::glb ? moved_glb(bytes, from, moved)
+                                                                : moved_obj(bytes, from, moved, options));
 }
 
 void write_mesh(const std::string& path, const TriMesh& mesh, const WriteOptions& options) {

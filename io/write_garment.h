@@ -15,6 +15,8 @@ struct WriteOptions {
     const TriMesh* avatar = nullptr; ///< written too, as an object or mesh of its own called "avatar"
 };
 
+struct ReadGarment;
+
 enum class GarmentFormat { obj, glb };
 
 /// By the file's ending, whatever its case. Throws InputError that lists the endings when it is none of them.
@@ -25,6 +27,14 @@ GarmentFormat garment_format(const std::string& path);
 /// Throws InputError when the target cannot be written.
 void write_garment(const std::string& path, const Garment& garment, const Points& x,
                    const WriteOptions& options = {});
+
+/// Writes a garment that was read from the file `from` with its nodes at x. In the format of `from` everything else of it
+/// stays as it is: faces, texture coordinates, groups, materials, unit and up axis, the order of all; files that it names
+/// are not copied. In the other format it is a garment of toile's, as write_garment() makes it. Throws InputError.
+void write_moved(const std::string& path, const std::string& from, const ReadGarment& read, const Points& x);
+
+/// Every file that write_moved(path, from) makes.
+std::vector<std::string> moved_files(const std::string& path, const std::string& from);
 
 /// Every file that write_garment(path) makes.
 std::vector<std::string> garment_files(const std::string& path);

@@ -12,44 +12,19 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <ostream>
 
 namespace toile {
 namespace {
 
-using Json = nlohmann::ordered_json;
+constexpr std::size_t listed = 5; // places of crossings, and seams
 
 struct InspectArguments {
     std::string garment, avatar, fabric;
     bool repair_avatar = false, json = false;
 };
-
-Json to_json(const Inspection& i) {
-    Json json{
-        {"panels", i.panels},
-        {"vertices", i.vertices},
-        {"nodes", i.nodes},
-        {"triangles", i.triangles},
-        {"pieces", i.pieces},
-        {"border_loops", i.border_loops},
-        {"joined_nodes", i.joined_nodes},
-        {"crowded_edges", i.crowded_edges},
-        {"turned_edges", i.turned_edges},
-        {"flat_triangles", i.flat_triangles},
-        {"not_finite", i.not_finite},
-        {"area", i.area},
-        {"mean_edge", i.mean_edge},
-        {"seam_gap_max", i.seam_gap_max},
-        {"intersections",
-         {{"cloth_avatar", i.intersections.cloth_avatar}, {"cloth_cloth", i.intersections.cloth_cloth}}}};
-    if (i.has_body) json["clearance_min"] = i.clearance;
-    if (!i.has_pattern) return json;
-    json["strain"] = strain_json(i.strain);
-    json["developability"] = {{"angle_defect_mean", i.developability.angle_defect_mean},
-                              {"angle_defect_max", i.developability.angle_defect_max}};
-    return json;
-}
 
 std::string row(const char* name, const Spread& s, double scale, const char* unit, double limit) {
     std::string line = text("  %-10s%8.3f to%8.3f, mean%8.3f, 99 %% within%8.3f %s", name, scale * s.min,
@@ -58,7 +33,49 @@ std::string row(const char* name, const Spread& s, double scale, const char* uni
     return line + '\n';
 }
 
-void print(std::ostream& out, const Inspection& i) {
+std::string place(const Vec3& p) {
+    return text("(%.3f, %.3f, %.3f) m", p.x(), p.y(), p.z());
+}
+
+/// What is beyond the list's end.
+void print_rest(std::ostream& out, std::size_t all, const char* what) {
+    if (all > listed) out << "  and " << all - listed << " more " << what << "; --json has all\n";
+}
+
+void print_crossings(std::ostream& out, const Inspection& i, const Garment& garment) {
+    for (std::size_t k = 0; k < std::min(listed, i.crossings.size()); ++k) {
+        const Crossing& c = i.crossings[k];
+        out << "  " << c.pairs.size() << (c.pairs.size() == 1 ? " pair" : " pairs") << " at " << place(c.at) << ": panel";
+        for (const int p : c.panels)
+            out << " \"" << garment.panel_names[p] << '"';
+        out << (c.with_body ? " and the body" : "") << ", triangles " << c.pairs[0][0] << " and " << c.pairs[0][1]
+            << (c.pairs.size() == 1 ? "\n" : " first\n");
+    }
+    print_rest(out, i.crossings.size(), "places");
+}
+
+void print_inside(std::ostream& out, const Inspection& i, const Garment& garment) {
+    if (!i.inside.known)
+        out << "in the body: not known, the body is not closed\n";
+    else if (i.inside.nodes == 0)
+        out << "in the body: no node\n";
+    else
+        out << "in the body: " << i.inside.nodes << (i.inside.nodes == 1 ? " node" : " nodes") << ", the deepest by "
+            << show_length(i.inside.depth) << " on panel \"" << garment.panel_names[i.inside.panel] << "\" at "
+            << place(i.inside.at) << '\n';
+}
+
+void print_gaps(std::ostream& out, const Inspection& i, const Garment& garment) {
+    for (std::size_t k = 0; k < std::min(listed, i.gaps.size()); ++k) {
+        const SeamGap& g = i.gaps[k];
+        out << "  " << show_length(g.gap) << " between panels \"" << garment.panel_names[g.panels[0]] << "\" and \""
+            << garment.panel_names[g.panels[1]] << "\" at " << place(g.at) << ", " << g.open << " of " << g.stitches
+            << " stitches open\n";
+    }
+    print_rest(out, i.gaps.size(), "seams");
+}
+
+void print(std::ostream& out, const Inspection& i, const Garment& garment) {
     out << i.panels << " panels, " << i.triangles << " triangles, " << i.vertices << " vertices, " << i.nodes
         << " nodes, mean edge " << show_length(i.mean_edge) << "\n"
         << i.pieces << (i.pieces == 1 ? " connected piece, " : " connected pieces, ") << i.border_loops
@@ -66,10 +83,15 @@ void print(std::ostream& out, const Inspection& i) {
         << " edges across which the side turns, " << i.flat_triangles << " triangles without area\n";
     out << "seams: " << (i.seam_gap_max == 0 ? "closed" : "open by up to " + show_length(i.seam_gap_max))
         << '\n';
+    print_gaps(out, i, garment);
     out << "intersections: ";
     if (i.has_body) out << i.intersections.cloth_avatar << " with the body, ";
     out << i.intersections.cloth_cloth << " of the cloth with itself\n";
-    if (i.has_body) out << "clearance: " << show_length(i.clearance) << '\n';
+    print_crossings(out, i, garment);
+    if (i.has_body) {
+        print_inside(out, i, garment);
+        out << "clearance: " << show_length(i.clearance) << '\n';
+    }
     if (!i.has_pattern) {
         out << "no strain: the file has no texture coordinates that are the pattern\n";
         return;
@@ -99,13 +121,13 @@ int inspect_command(const InspectArguments& a, const Console& console) {
     if (!a.fabric.empty()) fabrics.assign(read.garment.panel_names.size(), fabric_preset(a.fabric));
     const Inspection inspection = inspect(read.garment, read.x, body, fabrics);
     if (a.json) {
-        Json json = to_json(inspection);
+        nlohmann::ordered_json json = inspection_json(inspection, read.garment);
         json["notes"] = notes;
-        console.out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+        console.out << json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
     } else {
         for (const std::string& note : notes)
             console.err << "note: " << note << '\n';
-        print(console.out, inspection);
+        print(console.out, inspection, read.garment);
     }
     console.out << std::flush;
     return exit_made;

@@ -33,6 +33,7 @@ void add_check(CLI::App& app, Command& chosen);
 void add_flat(CLI::App& app, Command& chosen);
 void add_form(CLI::App& app, Command& chosen);
 void add_inspect(CLI::App& app, Command& chosen);
+void add_untangle(CLI::App& app, Command& chosen);
 void add_compare(CLI::App& app, Command& chosen);
 
 } // namespace toile

@@ -56,18 +56,6 @@ std::vector<std::string> targets(const DrapeJob& job) {
     return all;
 }
 
-/// Minutes of work must not end in a target that cannot be written or in an overwritten input.
-void refuse_targets(const DrapeJob& job) {
-    std::set<std::string> taken;
-    for (const std::string& input : {job.pattern, companion_path(job.pattern), job.avatar})
-        if (!input.empty()) taken.insert(fs::weakly_canonical(input).string());
-    for (const std::string& target : targets(job)) {
-        if (!taken.insert(fs::weakly_canonical(target).string()).second)
-            throw InputError(target + " is to be written but is an input or named twice");
-        check_writable(target);
-    }
-}
-
 /// Everything that shapes the result.
 std::string input_hash(const DrapeJob& job) {
     Hash hash;
@@ -136,6 +124,17 @@ void write_all(const DrapeJob& job, DrapeOutcome& outcome) {
 
 } // namespace
 
+void refuse_targets(const std::vector<std::string>& inputs, const std::vector<std::string>& targets) {
+    std::set<std::string> taken;
+    for (const std::string& input : inputs)
+        if (!input.empty()) taken.insert(fs::weakly_canonical(input).string());
+    for (const std::string& target : targets) {
+        if (!taken.insert(fs::weakly_canonical(target).string()).second)
+            throw InputError(target + " is to be written but is an input or named twice");
+        check_writable(target);
+    }
+}
+
 TriMesh form_of(const FormMeasures& measures) {
     try {
         return make_form(measures);
@@ -156,7 +155,7 @@ DrapeOutcome run_job(const DrapeJob& job) {
     Stopwatch watch;
     ReportContext context;
     DrapeOutcome outcome;
-    refuse_targets(job);
+    refuse_targets({job.pattern, companion_path(job.pattern), job.avatar}, targets(job));
 
     Pattern pattern;
     if (!is_staged(job.pattern)) pattern = sound_pattern(job.pattern, context.warnings);

@@ -40,6 +40,10 @@ struct DrapeOutcome {
 /// anything is; a drape that does not converge is written all the same, and `result.status` says so.
 DrapeOutcome run_job(const DrapeJob& job);
 
+/// Minutes of work must not end in a target that cannot be written or in an overwritten input: throws InputError. Inputs
+/// may be empty.
+void refuse_targets(const std::vector<std::string>& inputs, const std::vector<std::string>& targets);
+
 /// The built-in form. Throws CommandLineError when a measure is out of range.
 TriMesh form_of(const FormMeasures& measures);
 

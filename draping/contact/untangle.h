@@ -5,8 +5,11 @@
 // Magnenat-Thalmann: Resolving Surface Collisions through Intersection Contour Minimization, 2006. It needs no
 // history and no idea of inside and outside, and pulls a contour that ends at a border out over the border.
 
+#include "geometry/bvh.h"
 #include "geometry/distance.h"
 #include "geometry/edges.h"
+
+#include <functional>
 
 namespace toile {
 
@@ -27,6 +30,23 @@ struct ClothCrossing {
 /// Sorted by edge and triangle. In plain floating point: a look by exact predicates has the last word.
 std::vector<ClothCrossing> find_crossings(const TangledCloth& cloth, const Points& x);
 
+/// The same from round to round: looks only at what has moved since the last look. Keeps a reference to `cloth`.
+class CrossingFinder {
+public:
+    explicit CrossingFinder(const TangledCloth& cloth);
+    const std::vector<ClothCrossing>& look(const Points& x);
+
+private:
+    bool joined(int a, int b) const;
+    std::vector<ClothCrossing> crossings_of(const std::vector<char>& moved, const Points& x);
+
+    const TangledCloth& cloth_;
+    std::vector<std::array<int, 2>> sewn_; ///< nodes that touch because they are sewn, sorted
+    Bvh triangle_tree_, edge_tree_;
+    Points looked_at_;
+    std::vector<ClothCrossing> found_;
+};
+
 struct Untangled {
     int before = 0, after = 0; ///< crossings of edges and triangles
     int rounds = 0;
@@ -37,9 +57,16 @@ struct UntangleOptions {
     double longest_step = 0.4; ///< of the edge length, in one round
     int spread = 8;            ///< rounds of averaging with the neighbours
     int max_rounds = 400;
+    int patience = 400;        ///< rounds without fewer crossings than ever before after which it ends
+    /// Pulls a part that has gone through a sheet back through it as a whole, where the contour cuts a part off that is
+    /// no more than half the cloth: what is round like a sleeve has contours that shrink only with it. How parts are
+    /// told is from Baraff, Witkin, Kass: Untangling Cloth, 2003.
+    bool withdraw = false;
+    std::function<bool()> go_on = {}; ///< asked every round; false ends it
 };
 
-/// Moves the nodes of `x` near crossings until there are none, or `max_rounds` are over.
+/// Moves the nodes of `x` near crossings until there are none, or the options end it; then x is the state of fewest
+/// crossings on the way.
 Untangled untangle(const TangledCloth& cloth, Points& x, const UntangleOptions& options = {});
 
 } // namespace toile

@@ -24,7 +24,7 @@ const Strings draping_rooms = {"algebra", "fabric", "energy", "contact", "solve"
 /// files that may include them.
 // src/version.cpp asks every library for its version and includes no more than the header that has it.
 const std::map<std::string, Strings> doors = {
-    {"CGAL/", {"geometry/intersections.cpp", "patterns/triangulate_cgal.cpp", "src/version.cpp"}},
+    {"CGAL/", {"geometry/inside.cpp", "geometry/intersections.cpp", "patterns/triangulate_cgal.cpp", "src/version.cpp"}},
     {"cholmod.h", {"sewing/sparse_solve.cpp", "draping/algebra/cholesky.cpp", "src/version.cpp"}},
     {"suitesparse/", {}},
     {"nlopt", {}},

@@ -155,6 +155,10 @@ TEST_CASE("files that are not there and targets that cannot be written are refus
     CHECK_THAT(refuse({"flat", pattern, "-o", folder / "none/a.svg"}), Contains("none/a.svg"));
     CHECK_THAT(refuse({"inspect", folder / "none.obj"}), Contains("none.obj"));
     CHECK_THAT(refuse({"inspect", pattern}), Contains(".obj or .glb"));
+    CHECK_THAT(refuse({"untangle", folder / "none.obj", "-o", folder / "a.obj"}), Contains("none.obj"));
+    CHECK_THAT(refuse({"untangle", body, "-o", body}), Contains("input"));
+    CHECK_THAT(refuse({"untangle", body, "--avatar", folder / "none.obj", "-o", folder / "a.obj"}), Contains("none.obj"));
+    CHECK_THAT(refuse({"untangle", pattern, "-o", folder / "a.obj"}), Contains(".obj or .glb"));
     CHECK_THAT(refuse({"compare", body, folder / "none.obj"}), Contains("none.obj"));
     CHECK_THAT(refuse({"form", "-o", folder / "none/form.obj"}), Contains("none/form.obj"));
 }

@@ -70,6 +70,11 @@ TEST_CASE("a command line that cannot be used has exit code 1 and one sentence")
         {"flat", "a.json", "-o", "a.png"},
         {"compare", "a.obj"},
         {"inspect"},
+        {"untangle"},
+        {"untangle", "a.obj"},
+        {"untangle", "a.obj", "-o", "b.stl"},
+        {"untangle", "a.obj", "-o", "b.obj", "--clearance", "1"},
+        {"untangle", "a.obj", "-o", "b.obj", "--repair-avatar"},
     };
     for (const auto& line : lines) {
         const Run r = run_toile(line);
@@ -92,7 +97,7 @@ TEST_CASE("help and version are made, not errors") {
     CHECK(version.err.empty());
     const Run help = run_toile({"--help"});
     CHECK(help.code == 0);
-    for (const char* command : {"drape", "check", "flat", "form", "inspect", "compare"})
+    for (const char* command : {"drape", "check", "flat", "form", "inspect", "untangle", "compare"})
         CHECK_THAT(help.out, Contains(command));
     CHECK_THAT(run_toile({"drape", "--help"}).out, Contains("--edge-length") && Contains("poplin denim"));
 }

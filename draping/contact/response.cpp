@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/contact/response.h"
+
+#include "draping/contact/response_constraint.h"
+#include "draping/contact/response_impulse.h"
+#include "draping/contact/response_penalty.h"
+
+#include <stdexcept>
+
+namespace toile {
+
+const char* to_string(ContactResponse r) {
+    switch (r) {
+    case ContactResponse::barrier: return "barrier";
+    case ContactResponse::constraint: return "constraint";
+    case ContactResponse::penalty: return "penalty";
+    case ContactResponse::impulse: return "impulse";
+    case ContactResponse::rigid: return "rigid";
+    }
+    return "barrier";
+}
+
+ContactResponse contact_response(const std::string& name) {
+    std::string names;
+    for (const auto r : {ContactResponse::barrier, ContactResponse::constraint, ContactResponse::penalty,
+                         ContactResponse::impulse, ContactResponse::rigid}) {
+        if (name == to_string(r)) return r;
+        names += (names.empty() ? "" : ", ") + std::string(to_string(r));
+    }
+    throw std::invalid_argument("there is no contact response '" + name + "', the responses are " + names);
+}
+
+const char* to_string(Guarantee g) {
+    switch (g) {
+    case Guarantee::no_crossing: return "no_crossing";
+    case Guarantee::no_node_in_body: return "no_node_in_body";
+    case Guarantee::none: return "none";
+    }
+    return "none";
+}
+
+Vec3 NodeTouch::velocity(const Points& body, const Points& body_end, double dt) const {
+    Vec3 motion = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) motion += weight[k] * (body_end[corner[k]] - body[corner[k]]);
+    return motion / dt;
+}
+
+std::unique_ptr<Response> make_response(ContactResponse response, ContactCloth cloth, const TriMesh& body,
+                                        const ResponseOptions& options) {
+    switch (response) {
+    case ContactResponse::constraint: return constraint_response(std::move(cloth), body, options);
+    case ContactResponse::penalty: return penalty_response(std::move(cloth), body, options);
+    case ContactResponse::impulse: return impulse_response(std::move(cloth), body, options);
+    case ContactResponse::rigid: return rigid_response(std::move(cloth), body, options);
+    case ContactResponse::barrier: break;
+    }
+    throw std::invalid_argument("the barrier is an energy: it corrects no velocities");
+}
+
+} // namespace toile

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Penalties: springs and dampers between what is too near. Moore, Wilhelms: Collision Detection and Response for
+// Computer Animation, 1988, with a weaker spring on the way out; the shares of a face's corners and of an edge's ends
+// are the barycentric coordinates of the place that touches.
+#include "draping/contact/response_penalty.h"
+
+#include "draping/contact/impacts.h"
+#include "geometry/edges.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace toile {
+
+namespace {
+
+class Penalties final : public Response {
+public:
+    Penalties(ContactCloth cloth, const TriMesh& body, const ResponseOptions& options)
+        : options_(options), triangles_(body.triangles), edges_(make_edges(body.triangles, int(body.points.size()))),
+          contact_(pair_finder(std::move(cloth), body, std::max(options.thickness, options.depth), options.thickness,
+                               options.self)) {}
+
+    ResponseDone respond(const ResponseStep& step, Points& v) override {
+        StepPairs pairs(contact_, step, options_, v);
+        ResponseDone done;
+        const Normals normals = normals_at(contact_.body());
+        for (const auto& [pair, g, overlap] : overlaps(pairs, normals)) {
+            const ContactPair& p = pairs.pair(pair);
+            if (pairs.mobility(p, g) == 0) continue;
+            push(pairs, step, p, g, overlap);
+            ++done.repulsions;
+        }
+        pairs.finish(done);
+        for (std::size_t i = 0; i < v.size(); ++i) { // springs push nodes about, they hold none
+            done.other_force[i] += done.touch[i].force;
+            done.touch[i] = {};
+        }
+        return done;
+    }
+
+    Guarantee guarantee() const override { return Guarantee::none; }
+    const Points& body() const override { return contact_.body(); }
+    const ResponseOptions& options() const override { return options_; }
+
+private:
+    struct Normals {
+        Points face, edge, point; ///< unit, out of the body
+    };
+    struct Overlap {
+        int pair = 0;
+        PairGeometry at;    ///< its normal out of the body
+        double overlap = 0; ///< m, by which the pair is too near, or one has passed the other
+    };
+
+    Normals normals_at(const Points& body) const {
+        Normals n{Points(triangles_.size()), Points(edges_.size(), Vec3::Zero()), Points(body.size(), Vec3::Zero())};
+        for (std::size_t t = 0; t < triangles_.size(); ++t) {
+            const Triangle& k = triangles_[t];
+            const Vec3 area = (body[k[1]] - body[k[0]]).cross(body[k[2]] - body[k[0]]);
+            n.face[t] = area.normalized();
+            for (int c = 0; c < 3; ++c) {
+                n.edge[edges_.of_triangle[t][c]] += n.face[t];
+                n.point[k[c]] += area;
+            }
+        }
+        for (Points* all : {&n.edge, &n.point})
+            for (Vec3& v : *all) v.normalize();
+        return n;
+    }
+
+    int face_of(std::array<int, 3> corner) const {
+        // Pairs name a face by its corners; its edges lead to it.
+        std::sort(corner.begin(), corner.end());
+        const auto edge = std::lower_bound(edges_.ends.begin(), edges_.ends.end(), std::array{corner[0], corner[1]});
+        const int e = int(edge - edges_.ends.begin());
+        for (int k = edges_.first[e]; k < edges_.first[e + 1]; ++k) {
+            Triangle t = triangles_[edges_.incident[k]];
+            std::sort(t.begin(), t.end());
+            if (t == corner) return edges_.incident[k];
+        }
+        return -1;
+    }
+
+    Vec3 out_of_body(const ContactPair& p, const Normals& n, int nodes) const {
+        if (p.edge_edge) {
+            const std::array<int, 2> ends{p.p[2] - nodes, p.p[3] - nodes};
+            const auto at = std::lower_bound(edges_.ends.begin(), edges_.ends.end(), ends);
+            return n.edge[at - edges_.ends.begin()];
+        }
+        if (p.p[0] < nodes) return n.face[face_of({p.p[1] - nodes, p.p[2] - nodes, p.p[3] - nodes})];
+        return -n.point[p.p[0] - nodes]; // the point is the first of the pair
+    }
+
+    /// Pairs of cloth have no inside: their overlap is what is missing to the thickness. A node has the one nearest
+    /// face of the body, from either side of it; edges and points of the body count within the thickness of them.
+    std::vector<Overlap> overlaps(const StepPairs& pairs, const Normals& normals) const {
+        const int nodes = contact_.node_count();
+        std::vector<Overlap> all;
+        std::map<int, std::pair<Overlap, double>> on_face; // per node, and how straight above the face it is
+        for (const ActivePair& a : pairs.near()) {
+            const ContactPair& p = pairs.pair(a.pair);
+            Overlap o{a.pair, a.geometry, p.distance - a.geometry.d};
+            if (!p.with_body) {
+                if (a.geometry.d > 0) all.push_back(o);
+                continue;
+            }
+            const Vec3 out = out_of_body(p, normals, nodes);
+            if (a.geometry.d == 0) o.at.normal = out;
+            const double upright = a.geometry.normal.dot(out);
+            if (upright < 0) o.at.normal = -o.at.normal;
+            const double height = upright < 0 ? -a.geometry.d : a.geometry.d;
+            o.overlap = options_.thickness - height;
+            if (!p.edge_edge && pairs.is_node(p.p[0])) {
+                const auto [at, fresh] = on_face.try_emplace(p.p[0], o, std::abs(upright));
+                if (fresh) continue;
+                auto& [best, straight] = at->second;
+                const double nearest = std::abs(options_.thickness - best.overlap);
+                if (a.geometry.d < nearest || (a.geometry.d == nearest && std::abs(upright) > straight))
+                    at->second = {o, std::abs(upright)};
+            } else if (o.overlap > 0 && a.geometry.d < options_.thickness) {
+                all.push_back(o);
+            }
+        }
+        for (const auto& [node, found] : on_face)
+            if (found.first.overlap > 0) all.push_back(found.first);
+        return all;
+    }
+
+    /// Springs and dampers by the velocities at the start of the step: at rest they bear exactly what weighs on them.
+    void push(StepPairs& pairs, const ResponseStep& step, const ContactPair& p, const PairGeometry& g,
+              double overlap) const {
+        Vec3 rate = Vec3::Zero();
+        for (int k = 0; k < 4; ++k)
+            rate += g.weight[k] * (pairs.is_node(p.p[k]) ? step.start_velocity[p.p[k]] : pairs.velocity(p.p[k]));
+        const double leaving = rate.dot(g.normal);
+        const double spring = options_.stiffness * overlap * (leaving > 0 ? options_.separation_share : 1);
+        const double force = std::max(0.0, spring - options_.normal_damping * leaving);
+        const Vec3 sliding = rate - leaving * g.normal;
+        const double speed = sliding.norm(), coefficient = p.with_body ? options_.body_friction : options_.cloth_friction;
+        Vec3 total = force * g.normal;
+        if (speed > 0) total -= std::min(options_.tangential_damping * speed, coefficient * force) / speed * sliding;
+        pairs.push(p, g, step.dt * total);
+    }
+
+    ResponseOptions options_;
+    std::vector<Triangle> triangles_;
+    EdgeTable edges_;
+    Contact contact_;
+};
+
+} // namespace
+
+std::unique_ptr<Response> penalty_response(ContactCloth cloth, const TriMesh& body, const ResponseOptions& options) {
+    return std::make_unique<Penalties>(std::move(cloth), body, options);
+}
+
+} // namespace toile

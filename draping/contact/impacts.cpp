@@ -41,13 +41,15 @@ void StepPairs::renew() {
     contact_.prepare(step_.x, dx_, body_moves_ ? &body_dx_ : nullptr);
 }
 
-std::optional<Impact> StepPairs::impact(int i) const {
+std::optional<Impact> StepPairs::impact(int i) const { return impact(i, nearest_share * pair(i).distance); }
+
+std::optional<Impact> StepPairs::impact(int i, double nearest) const {
     const ContactPair& p = contact_.pair(i);
     Motion m;
     m.x = contact_.corners(step_.x, p);
     for (int k = 0; k < 4; ++k) m.dx[k] = is_node(p.p[k]) ? Vec3(step_.dt * v_[p.p[k]]) : body_dx_[p.p[k] - nodes_];
     const double start = pair_geometry(m.x, p.edge_edge).d;
-    const ToiOptions options{.keep = keep, .min_distance = std::min(nearest_share * p.distance, start_share * start)};
+    const ToiOptions options{.keep = keep, .min_distance = std::min(nearest, start_share * start)};
     const double t = p.edge_edge ? time_of_impact_edge_edge(m, options) : time_of_impact_point_triangle(m, options);
     if (t >= 1) return {};
     for (int k = 0; k < 4; ++k) m.x[k] += t * m.dx[k];

@@ -28,9 +28,11 @@ public:
 
     /// Pairs nearer than their distance at the start.
     std::vector<ActivePair> near() const { return contact_.active(step_.x); }
-    /// Pairs that meet within the step, in the order of the list. A pair counts as meeting where it would come nearer
-    /// than a tenth of the thickness, or than half of what it begins with.
+    /// Pairs that meet within the step, in the order of the list.
     std::vector<Impact> impacts();
+    /// The pair, if it would come nearer than `nearest`, m, or than half of what it begins with.
+    std::optional<Impact> impact(int pair, double nearest) const;
+    /// The same for a tenth of the pair's distance.
     std::optional<Impact> impact(int pair) const;
     /// Pairs that may come nearer than their distance, rising.
     std::vector<int> reachable() const;

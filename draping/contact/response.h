@@ -72,6 +72,7 @@ struct ResponseDone {
     Points other_force;   ///< N per node, mean of the step, of all other contact
     int held = 0;         ///< nodes that constraints hold
     int repulsions = 0;   ///< pairs pushed apart before they met
+    int repulsion_sweeps = 0; ///< over them
     int impulses = 0;     ///< given to pairs that would have met
     int sweeps = 0;       ///< over them
     int zones = 0, zone_nodes = 0; ///< moved as rigid bodies

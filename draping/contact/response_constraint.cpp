@@ -63,7 +63,7 @@ private:
                 PairGeometry at = pairs.geometry(face);
                 double room = 0; // m, that the node may still go: it arrives on the face without bouncing
                 if (at.d >= options_.thickness * (was_held ? reach_share : 1)) {
-                    const auto impact = pairs.impact(face);
+                    const auto impact = pairs.impact(face, options_.thickness);
                     if (!impact) continue;
                     room = std::max(0.0, at.d - options_.thickness);
                     at = impact->at;

@@ -46,6 +46,7 @@ private:
         const std::vector<ActivePair> near = pairs.near();
         for (int sweep = 0; sweep < options_.repulsion_sweeps; ++sweep) {
             bool moved = false;
+            ++done.repulsion_sweeps;
             for (const ActivePair& a : near) {
                 const ContactPair& p = pairs.pair(a.pair);
                 const double missing = p.distance / reach_share - a.geometry.d, mobility = pairs.mobility(p, a.geometry);

@@ -140,7 +140,7 @@ TEST_CASE("constraint: holds a node where it meets a face, moves with it, and le
     CHECK(done.held == 3);
     for (int i = 0; i < 3; ++i) {
         CHECK(p.v[i].norm() == 0); // at once, without a bounce, and still
-        CHECK(p.x[i].y() == Approx(o.thickness).epsilon(0.3));
+        CHECK(p.x[i].y() == Approx(o.thickness).epsilon(0.05));
         CHECK(done.touch[i].on);
         CHECK((done.touch[i].force - Vec3(0, mass * g, 0)).norm() < 1e-9);
     }
@@ -188,17 +188,16 @@ TEST_CASE("constraint: edges of the body and the cloth itself are missed, where 
 }
 
 TEST_CASE("impulse: sweeps over N stacked sheets grow as N squared", "[responses]") {
+    // Sheets that touch their neighbours alone, and come down together: only the lowest learns of the floor at first.
     const auto sweeps = [](int count) {
         ResponseOptions o;
-        o.repulsion_sweeps = 0;
-        o.impulse_sweeps = 100000;
-        o.zone_rounds = 0;
-        Particles p = stacked_sheets(count, 1, 0.02, 1e-3, 1e-3, mass);
-        for (Vec3& v : p.v) v.y() = -2; // 20 mm in the step, where 1 mm is free
+        o.repulsion_sweeps = 100000;
+        Particles p = stacked_sheets(count, 1, 0.02, 0.8 * o.thickness, 0.8 * o.thickness, mass);
+        for (Vec3& v : p.v) v.y() = -0.1;
         const auto response = response_of(ContactResponse::impulse, p, floor_face(), o);
-        const ResponseDone done = p.step(*response, 1e-2);
+        const ResponseDone done = p.step(*response, 1e-3);
         CHECK(done.unresolved == 0);
-        return done.sweeps;
+        return done.repulsion_sweeps;
     };
     const int s4 = sweeps(4), s8 = sweeps(8), s16 = sweeps(16);
     INFO(s4 << ", " << s8 << " and " << s16 << " sweeps over 4, 8 and 16 sheets");
@@ -211,10 +210,10 @@ TEST_CASE("impulse: sweeps over N stacked sheets grow as N squared", "[responses
 TEST_CASE("impulse: what the sweeps leave, zones take", "[responses]") {
     ResponseOptions o;
     o.impulse_sweeps = 2;
-    Particles p = stacked_sheets(8, 2, 0.02, 1e-3, 1e-3, mass);
-    for (Vec3& v : p.v) v.y() = -2;
+    Particles p = stacked_sheets(8, 2, 0.02, 0.01, 0.2e-3, mass);
+    for (Vec3& v : p.v) v.y() = -10.05;
     const auto response = response_of(ContactResponse::impulse, p, floor_face(), o);
-    const ResponseDone done = p.step(*response, 1e-2);
+    const ResponseDone done = p.step(*response, 1e-3);
     CHECK(done.sweeps == 2);
     CHECK(done.zones > 0);
     CHECK(done.unresolved == 0);
@@ -307,7 +306,7 @@ TEST_CASE("friction of cloth on cloth has a coefficient of its own", "[responses
             lower += p.v[i] / 25;
             upper += p.v[25 + i] / 25;
         }
-        CHECK(std::abs(lower.x()) < 1e-6);
+        CHECK(std::abs(lower.x()) < 1e-4);
         CHECK(upper.x() == Approx(0.1 - coefficient * g * 0.01).epsilon(0.1));
     }
 }

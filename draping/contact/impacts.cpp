@@ -16,8 +16,6 @@ constexpr double nearest_share = 0.1; // of a pair's distance, to which pairs ma
 constexpr double start_share = 0.5;   // of what they begin with, if that is less
 constexpr double keep = 0.01;         // of the rest, lest the search for the time of impact never end
 
-bool on_face(const ContactPair& p, int nodes) { return p.with_body && !p.edge_edge && p.p[0] < nodes; }
-
 } // namespace
 
 Contact pair_finder(ContactCloth cloth, const TriMesh& body, double reach_body, double reach_cloth, bool self) {
@@ -26,8 +24,7 @@ Contact pair_finder(ContactCloth cloth, const TriMesh& body, double reach_body, 
 
 StepPairs::StepPairs(Contact& contact, const ResponseStep& step, const ResponseOptions& options, Points& v)
     : contact_(contact), step_(step), options_(options), v_(v), nodes_(int(v.size())),
-      body_dx_(step.body_end.size()), body_velocity_(step.body_end.size()), touch_(v.size(), Vec3::Zero()),
-      other_(v.size(), Vec3::Zero()) {
+      body_dx_(step.body_end.size()), body_velocity_(step.body_end.size()), other_(v.size(), Vec3::Zero()) {
     for (std::size_t i = 0; i < body_dx_.size(); ++i) {
         body_dx_[i] = step.body_end[i] - contact.body()[i];
         body_velocity_[i] = body_dx_[i] / step.dt;
@@ -78,64 +75,72 @@ std::vector<Impact> StepPairs::impacts() {
     return all;
 }
 
-Vec3 StepPairs::closing(const ContactPair& p, const PairGeometry& g) const {
+Vec3 StepPairs::closing(int i, const PairGeometry& g) const {
     Vec3 rate = Vec3::Zero();
-    for (int k = 0; k < 4; ++k) rate += g.weight[k] * velocity(p.p[k]);
+    for (int k = 0; k < 4; ++k) rate += g.weight[k] * velocity(pair(i).p[k]);
     return rate;
 }
 
-double StepPairs::mobility(const ContactPair& p, const PairGeometry& g) const {
+double StepPairs::mobility(int i, const PairGeometry& g) const {
     double sum = 0;
-    for (int k = 0; k < 4; ++k) sum += g.weight[k] * g.weight[k] * inverse_mass(p.p[k]);
+    for (int k = 0; k < 4; ++k) sum += g.weight[k] * g.weight[k] * inverse_mass(pair(i).p[k]);
     return sum;
 }
 
-void StepPairs::push(const ContactPair& p, const PairGeometry& g, const Vec3& impulse) {
-    Points& record = on_face(p, nodes_) ? touch_ : other_;
+void StepPairs::push(int i, const PairGeometry& g, const Vec3& impulse, bool counts) {
+    const ContactPair& p = pair(i);
+    if (counts && p.with_body) {
+        Pushed& pushed = on_body_[{p.p, p.edge_edge}];
+        pushed.impulse += impulse;
+        pushed.weight = g.weight;
+    }
     for (int k = 0; k < 4; ++k) {
         if (!is_node(p.p[k])) continue;
         v_[p.p[k]] += g.weight[k] * inverse_mass(p.p[k]) * impulse;
-        record[p.p[k]] += g.weight[k] * impulse;
+        if (counts && !p.with_body) other_[p.p[k]] += g.weight[k] * impulse;
     }
 }
 
-void StepPairs::push_with_friction(const ContactPair& p, const PairGeometry& g, double along) {
-    const Vec3 rate = closing(p, g), sliding = rate - rate.dot(g.normal) * g.normal;
-    const double speed = sliding.norm(), coefficient = p.with_body ? options_.body_friction : options_.cloth_friction;
-    Vec3 impulse = along * g.normal;
-    if (speed > 0) impulse -= std::min(coefficient * along, speed / mobility(p, g)) / speed * sliding;
-    push(p, g, impulse);
+Vec3 StepPairs::friction(int i, const PairGeometry& g, double along) const {
+    const Vec3 rate = closing(i, g), sliding = rate - rate.dot(g.normal) * g.normal;
+    const double speed = sliding.norm();
+    const double coefficient = pair(i).with_body ? options_.body_friction : options_.cloth_friction;
+    if (speed == 0) return Vec3::Zero();
+    return -std::min(coefficient * along, speed / mobility(i, g)) / speed * sliding;
 }
 
-void StepPairs::finish(ResponseDone& done) {
-    done.touch = touches_at(contact_, step_.x);
+void StepPairs::note_zone(int node, const Vec3& impulse, int body_point) {
+    if (body_point < 0 || impulse.isZero(0)) {
+        other_[node] += impulse;
+        return;
+    }
+    Touch t;
+    t.point = {node, body_point, body_point, body_point};
+    t.weight = {1, -1, 0, 0};
+    t.normal = impulse.normalized();
+    t.force = impulse / step_.dt;
+    t.welded = true;
+    welds_.push_back(t);
+}
+
+void StepPairs::finish(ResponseDone& done, bool holds) {
     done.other_force.assign(nodes_, Vec3::Zero());
-    for (int i = 0; i < nodes_; ++i) {
-        done.other_force[i] = other_[i] / step_.dt;
-        if (done.touch[i].on)
-            done.touch[i].force = touch_[i] / step_.dt;
-        else
-            done.other_force[i] += touch_[i] / step_.dt; // of a face that was out of reach at the start
-    }
-    contact_.set_body(step_.body_end);
-}
-
-std::vector<NodeTouch> touches_at(const Contact& contact, const Points& x) {
-    std::vector<NodeTouch> touch(x.size());
-    std::vector<double> nearest(x.size(), std::numeric_limits<double>::infinity());
-    for (const ActivePair& a : contact.active(x)) {
-        const ContactPair& p = contact.pair(a.pair);
-        if (!on_face(p, int(x.size())) || a.geometry.d >= nearest[p.p[0]]) continue;
-        nearest[p.p[0]] = a.geometry.d;
-        NodeTouch& t = touch[p.p[0]];
-        t.on = true;
-        t.normal = a.geometry.normal;
-        for (int k = 0; k < 3; ++k) {
-            t.corner[k] = p.p[k + 1] - int(x.size());
-            t.weight[k] = -a.geometry.weight[k + 1];
+    for (int i = 0; i < nodes_; ++i) done.other_force[i] = other_[i] / step_.dt;
+    if (holds) {
+        for (const ActivePair& a : near()) {
+            const ContactPair& p = pair(a.pair);
+            if (!p.with_body || a.geometry.d == 0) continue;
+            const auto pushed = on_body_.extract({p.p, p.edge_edge});
+            const Vec3 force = pushed ? Vec3(pushed.mapped().impulse / step_.dt) : Vec3::Zero();
+            done.touches.push_back({p.p, a.geometry.weight, a.geometry.normal, force, p.edge_edge, false});
         }
+        done.touches.insert(done.touches.end(), welds_.begin(), welds_.end());
+        std::sort(done.touches.begin(), done.touches.end(), before);
     }
-    return touch;
+    for (const auto& [pair, pushed] : on_body_) // out of reach at the start, or none that holds
+        for (int k = 0; k < 4; ++k)
+            if (is_node(pair.first[k])) done.other_force[pair.first[k]] += pushed.weight[k] / step_.dt * pushed.impulse;
+    contact_.set_body(step_.body_end);
 }
 
 } // namespace toile

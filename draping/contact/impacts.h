@@ -5,6 +5,7 @@
 
 #include "draping/contact/response.h"
 
+#include <map>
 #include <optional>
 
 namespace toile {
@@ -46,19 +47,23 @@ public:
     Vec3 place(int point) const { return point < nodes_ ? step_.x[point] : contact_.body()[point - nodes_]; }
 
     /// Rate of the vector between the nearest points.
-    Vec3 closing(const ContactPair& p, const PairGeometry& g) const;
+    Vec3 closing(int pair, const PairGeometry& g) const;
     /// What an impulse of 1 N s changes of that rate; 0 when neither side can move.
-    double mobility(const ContactPair& p, const PairGeometry& g) const;
+    double mobility(int pair, const PairGeometry& g) const;
     /// An impulse (N s) on the first of the pair and its opposite on the second, shared out by barycentric weights,
-    /// as Bridson, Fedkiw and Anderson 2002 do.
-    void push(const ContactPair& p, const PairGeometry& g, const Vec3& impulse);
-    /// Pushes by `along` N s along the normal and by what friction makes of it: Coulomb's law for impulses.
-    void push_with_friction(const ContactPair& p, const PairGeometry& g, double along);
-    /// Notes that a node was pushed otherwise, as part of its force: by the body's faces or by something else.
-    void note(int node, const Vec3& impulse, bool by_face) { (by_face ? touch_ : other_)[node] += impulse; }
+    /// as Bridson, Fedkiw and Anderson 2002 do. One that corrects places does not count as force.
+    void push(int pair, const PairGeometry& g, const Vec3& impulse, bool counts = true);
+    /// What friction makes of an impulse of `along` N s on the normal: Coulomb's law for impulses.
+    Vec3 friction(int pair, const PairGeometry& g, double along) const;
+    void push_with_friction(int pair, const PairGeometry& g, double along) {
+        push(pair, g, along * g.normal + friction(pair, g, along));
+    }
+    /// Notes what zones did to a node: that it is welded to a point of the body, or moved otherwise (-1).
+    void note_zone(int node, const Vec3& impulse, int body_point);
 
-    /// Forces of what was pushed, and the touches of the pairs near the body, which then is where the step ends.
-    void finish(ResponseDone& done);
+    /// Forces of what was pushed, and the pairs near the body as touches unless springs alone act; the body then is
+    /// where the step ends.
+    void finish(ResponseDone& done, bool holds);
 
 private:
     Contact& contact_;
@@ -69,10 +74,13 @@ private:
     Points body_dx_, body_velocity_;
     bool body_moves_ = false;
     Eigen::VectorXd dx_;
-    Points touch_, other_; ///< N s per node, by faces of the body and by all else
+    struct Pushed {
+        Vec3 impulse = Vec3::Zero(); ///< N s
+        std::array<double, 4> weight{};
+    };
+    std::map<std::pair<std::array<int, 4>, bool>, Pushed> on_body_; ///< by points and kind of a pair: indices change
+    std::vector<Touch> welds_;
+    Points other_;                ///< N s by node
 };
-
-/// The face under every node: of the pairs within their distance at x those of a node with the body, nearest first.
-std::vector<NodeTouch> touches_at(const Contact& contact, const Points& x);
 
 } // namespace toile

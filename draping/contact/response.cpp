@@ -6,6 +6,7 @@
 #include "draping/contact/response_penalty.h"
 
 #include <stdexcept>
+#include <tuple>
 
 namespace toile {
 
@@ -39,10 +40,8 @@ const char* to_string(Guarantee g) {
     return "none";
 }
 
-Vec3 NodeTouch::velocity(const Points& body, const Points& body_end, double dt) const {
-    Vec3 motion = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) motion += weight[k] * (body_end[corner[k]] - body[corner[k]]);
-    return motion / dt;
+bool before(const Touch& a, const Touch& b) {
+    return std::tie(a.point, a.edge_edge) < std::tie(b.point, b.edge_edge);
 }
 
 std::unique_ptr<Response> make_response(ContactResponse response, ContactCloth cloth, const TriMesh& body,

@@ -54,21 +54,20 @@ struct ResponseStep {
     const Points& body_end;                   ///< where the body's points are at the end; they move there on lines
 };
 
-/// A node on a face, edge or point of the body.
-struct NodeTouch {
-    bool on = false;
-    Vec3 normal = Vec3::Zero(); ///< unit, out of the body
-    std::array<int, 3> corner{}; ///< points of the body
-    std::array<double, 3> weight{}; ///< of the place where it touches
-    Vec3 force = Vec3::Zero();  ///< N on the node, mean of the step
-
-    /// Velocity of the place: the sum of the weighted motions of its corners over dt.
-    Vec3 velocity(const Points& body, const Points& body_end, double dt) const;
+/// Cloth on the body: a pair of which one side is cloth. What touches is the place of the barycentric weights on
+/// either side; forces on it are shared out by the same weights.
+struct Touch {
+    std::array<int, 4> point{};     ///< nodes, and points of the body from the node count on
+    std::array<double, 4> weight{}; ///< the vector between the places is the sum of weight x
+    Vec3 normal = Vec3::Zero();     ///< unit, along which the force pushes
+    Vec3 force = Vec3::Zero();      ///< N, mean of the step; `weight` times it acts on each node
+    bool edge_edge = false;
+    bool welded = false;            ///< held in every direction, whatever friction can bear, while the force pushes
 };
 
 struct ResponseDone {
-    /// Per node: that the body's faces hold it up, while it does not pull. A touch may be without force.
-    std::vector<NodeTouch> touch;
+    /// Pairs near the body that hold the cloth up, while they do not pull; one may be without force. Sorted by points.
+    std::vector<Touch> touches;
     Points other_force;   ///< N per node, mean of the step, of all other contact
     int held = 0;         ///< nodes that constraints hold
     int repulsions = 0;   ///< pairs pushed apart before they met
@@ -78,6 +77,9 @@ struct ResponseDone {
     int zones = 0, zone_nodes = 0; ///< moved as rigid bodies
     int unresolved = 0;   ///< impacts that are left; above 0 a guarantee is gone
 };
+
+/// Order of touches; of one pair are those of which neither comes first.
+bool before(const Touch& a, const Touch& b);
 
 class Response {
 public:

@@ -32,7 +32,9 @@ public:
             done.held += holds;
             done.unresolved += passes(pairs, faces[i]);
         }
-        pairs.finish(done);
+        pairs.finish(done, true);
+        // Edges, and points of the body under the cloth, hold nothing.
+        std::erase_if(done.touches, [&](const Touch& t) { return t.edge_edge || !pairs.is_node(t.point[0]); });
         return done;
     }
 
@@ -59,7 +61,6 @@ private:
         for (int k = 0; k < most_faces && !free; ++k) {
             free = true;
             for (const int face : faces) {
-                const ContactPair& p = pairs.pair(face);
                 PairGeometry at = pairs.geometry(face);
                 double room = 0; // m, that the node may still go: it arrives on the face without bouncing
                 if (at.d >= options_.thickness * (was_held ? reach_share : 1)) {
@@ -68,9 +69,9 @@ private:
                     room = std::max(0.0, at.d - options_.thickness);
                     at = impact->at;
                 }
-                const double approach = -pairs.closing(p, at).dot(at.normal) - room / dt;
+                const double approach = -pairs.closing(face, at).dot(at.normal) - room / dt;
                 if (approach <= 0) continue; // the force would pull
-                pairs.push_with_friction(p, at, approach / pairs.mobility(p, at));
+                pairs.push_with_friction(face, at, approach / pairs.mobility(face, at));
                 is_held = true;
                 free = free && approach * dt < small_share * options_.thickness;
             }
@@ -80,9 +81,8 @@ private:
         const int face = *std::min_element(faces.begin(), faces.end(), [&](int a, int b) {
             return pairs.geometry(a).d < pairs.geometry(b).d;
         });
-        const ContactPair& p = pairs.pair(face);
         const PairGeometry at = pairs.geometry(face);
-        pairs.push(p, at, -pairs.closing(p, at) / pairs.mobility(p, at));
+        pairs.push(face, at, -pairs.closing(face, at) / pairs.mobility(face, at));
         return true;
     }
 

@@ -32,7 +32,7 @@ public:
             stop_impacts(pairs, done);
         }
         resolve_by_zones(pairs, step, v, options_.zone_rounds, done);
-        pairs.finish(done);
+        pairs.finish(done, true);
         return done;
     }
 
@@ -48,19 +48,18 @@ private:
             bool moved = false;
             ++done.repulsion_sweeps;
             for (const ActivePair& a : near) {
-                const ContactPair& p = pairs.pair(a.pair);
-                const double missing = p.distance / reach_share - a.geometry.d, mobility = pairs.mobility(p, a.geometry);
+                const double missing = pairs.pair(a.pair).distance / reach_share - a.geometry.d;
+                const double mobility = pairs.mobility(a.pair, a.geometry);
                 if (!(missing > 0 && mobility > 0 && a.geometry.d > 0)) continue;
-                const double approach = -pairs.closing(p, a.geometry).dot(a.geometry.normal);
-                const double stop = std::max(0.0, approach / mobility);
-                double spring = 0;
-                if (sweep == 0)
-                    spring = std::clamp((part * missing / dt + std::min(approach, 0.0)) / mobility, 0.0,
-                                        dt * options_.stiffness * missing);
-                if (stop == 0 && spring == 0) continue;
-                pairs.push_with_friction(p, a.geometry, stop + spring);
-                done.repulsions += sweep == 0;
+                const double approach = -pairs.closing(a.pair, a.geometry).dot(a.geometry.normal);
+                if (approach > 0) pairs.push_with_friction(a.pair, a.geometry, approach / mobility);
                 moved = moved || approach > still;
+                if (sweep > 0) continue;
+                const double spring = std::clamp((part * missing / dt + std::min(approach, 0.0)) / mobility, 0.0,
+                                                 dt * options_.stiffness * missing);
+                const Vec3 friction = pairs.friction(a.pair, a.geometry, spring);
+                pairs.push(a.pair, a.geometry, spring * a.geometry.normal + friction, false);
+                done.repulsions += approach > 0 || spring > 0;
             }
             if (!moved) break;
         }
@@ -75,11 +74,10 @@ private:
             for (const Impact& found : impacts) {
                 const auto impact = pairs.impact(found.pair); // by what the impulses before it have left
                 if (!impact) continue;
-                const ContactPair& p = pairs.pair(impact->pair);
-                const double mobility = pairs.mobility(p, impact->at);
-                const double approach = -pairs.closing(p, impact->at).dot(impact->at.normal);
+                const double mobility = pairs.mobility(impact->pair, impact->at);
+                const double approach = -pairs.closing(impact->pair, impact->at).dot(impact->at.normal);
                 if (!(approach > 0 && mobility > 0)) continue;
-                pairs.push_with_friction(p, impact->at, approach / mobility);
+                pairs.push_with_friction(impact->pair, impact->at, approach / mobility);
                 ++done.impulses;
             }
         }

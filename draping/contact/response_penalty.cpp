@@ -27,16 +27,11 @@ public:
         ResponseDone done;
         const Normals normals = normals_at(contact_.body());
         for (const auto& [pair, g, overlap] : overlaps(pairs, normals)) {
-            const ContactPair& p = pairs.pair(pair);
-            if (pairs.mobility(p, g) == 0) continue;
-            push(pairs, step, p, g, overlap);
+            if (pairs.mobility(pair, g) == 0) continue;
+            push(pairs, step, pair, g, overlap);
             ++done.repulsions;
         }
-        pairs.finish(done);
-        for (std::size_t i = 0; i < v.size(); ++i) { // springs push nodes about, they hold none
-            done.other_force[i] += done.touch[i].force;
-            done.touch[i] = {};
-        }
+        pairs.finish(done, false); // springs push nodes about, they hold none
         return done;
     }
 
@@ -129,8 +124,8 @@ private:
     }
 
     /// Springs and dampers by the velocities at the start of the step: at rest they bear exactly what weighs on them.
-    void push(StepPairs& pairs, const ResponseStep& step, const ContactPair& p, const PairGeometry& g,
-              double overlap) const {
+    void push(StepPairs& pairs, const ResponseStep& step, int pair, const PairGeometry& g, double overlap) const {
+        const ContactPair& p = pairs.pair(pair);
         Vec3 rate = Vec3::Zero();
         for (int k = 0; k < 4; ++k)
             rate += g.weight[k] * (pairs.is_node(p.p[k]) ? step.start_velocity[p.p[k]] : pairs.velocity(p.p[k]));
@@ -141,7 +136,7 @@ private:
         const double speed = sliding.norm(), coefficient = p.with_body ? options_.body_friction : options_.cloth_friction;
         Vec3 total = force * g.normal;
         if (speed > 0) total -= std::min(options_.tangential_damping * speed, coefficient * force) / speed * sliding;
-        pairs.push(p, g, step.dt * total);
+        pairs.push(pair, g, step.dt * total);
     }
 
     ResponseOptions options_;

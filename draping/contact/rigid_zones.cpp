@@ -92,15 +92,18 @@ void resolve_by_zones(StepPairs& pairs, const ResponseStep& step, Points& v, int
                     free.add(1 / step.inverse_mass[i], step.x[i], before[i]);
                 else
                     led.add(1, step.x[i], before[i]);
-            for (const int i : held[zone]) led.add(1, pairs.place(i), pairs.velocity(i));
+            if (const auto body = held.find(zone); body != held.end())
+                for (const int i : body->second) led.add(1, pairs.place(i), pairs.velocity(i));
             const RigidMotion motion = (led.mass > 0 ? led : free).motion();
             for (const int i : nodes)
                 if (step.inverse_mass[i] > 0) v[i] = motion.at(step.x[i]);
         }
     }
-    for (int i = 0; i < n; ++i)
-        if (in_zone[i] && step.inverse_mass[i] > 0)
-            pairs.note(i, (v[i] - before[i]) / step.inverse_mass[i], held.count(sets.find(i)) > 0);
+    for (int i = 0; i < n; ++i) {
+        if (!in_zone[i] || step.inverse_mass[i] == 0) continue;
+        const auto led = held.find(sets.find(i));
+        pairs.note_zone(i, (v[i] - before[i]) / step.inverse_mass[i], led == held.end() ? -1 : *led->second.begin());
+    }
 }
 
 } // namespace toile

@@ -11,26 +11,21 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double hold_share = 100; // of a node's own entries in the matrix, with which faces hold nodes
-constexpr double stuck = 1e-9;     // m/s, below which a node does not slide
+constexpr double hold_share = 100; // of the nodes' own entries in the matrix, with which touches hold
+constexpr double stuck = 1e-6;     // m/s, below which a touch does not slide
+constexpr int most_rounds = 4;     // solves of a step, until every touch that slides or pulls is known
 
-/// What holds a node in the solve: along the normal, or in every direction while it does not slide.
-Mat3 held_directions(const NodeTouch& t, bool slides) {
-    return slides ? Mat3(t.normal * t.normal.transpose()) : Mat3::Identity();
+/// The directions that a touch holds: the normal, or all while it does not slide.
+Mat3 held_directions(const HeldTouch& h) {
+    return h.slides ? Mat3(h.touch.normal * h.touch.normal.transpose()) : Mat3::Identity();
 }
 
-/// Friction of a sliding node, against its motion along the face.
-Vec3 sliding_friction(const NodeTouch& t, const Vec3& relative, double coefficient) {
-    const Vec3 along = relative - relative.dot(t.normal) * t.normal;
-    const double speed = along.norm();
-    return speed > 0 ? Vec3(-coefficient * std::max(0.0, t.force.dot(t.normal)) / speed * along) : Vec3::Zero();
-}
+Vec3 along_face(const Touch& t, const Vec3& v) { return v - v.dot(t.normal) * t.normal; }
 
-/// A force of contact pushes, and along the face does what friction can.
-/// Returns whether friction was asked for more.
-bool within_cone(NodeTouch& t, double coefficient) {
+/// Cuts the force to what friction can bear; returns whether it had to.
+bool cut_to_cone(Touch& t, double coefficient) {
     const double normal = t.force.dot(t.normal);
-    const Vec3 along = t.force - normal * t.normal;
+    const Vec3 along = along_face(t, t.force);
     if (along.norm() <= coefficient * normal) return false;
     t.force = normal * t.normal + coefficient * normal / along.norm() * along;
     return true;
@@ -47,85 +42,138 @@ struct Step {
     int n = problem.points();
     double dt = options.time_step;
     Points body_start = response.body();
-    Points face_velocity = {};            ///< per touching node
-    std::vector<double> hold = {};        ///< kg per touching node, in the solve
+    std::vector<double> hold = {}; ///< kg, of each touch in the solve
+    double friction = response.options().body_friction;
 
     double mass(int i) const { return problem.mass()[3 * i]; }
+    bool pinned(int i) const { return problem.pinned()[i]; }
 
-    /// The velocities by the cloth's own forces and what contact did in the last step.
+    /// Rate of the vector between the places that touch.
+    Vec3 rate(const Touch& t, const Points& v) const {
+        Vec3 sum = Vec3::Zero();
+        for (int k = 0; k < 4; ++k) {
+            const int i = t.point[k];
+            if (t.weight[k] != 0) sum += t.weight[k] * (i < n ? v[i] : Vec3((body_end[i - n] - body_start[i - n]) / dt));
+        }
+        return sum;
+    }
+
+    /// The velocities by the cloth's own forces and by what contact did in the last step; touches that pull are let go
+    /// on the way, and those that friction does not hold slide.
     Points candidate() {
         problem.arrive(cloth.x);
-        VectorXd b;
-        problem.gradient(cloth.x, b);
-        b *= -dt;
-        b += problem.mass().cwiseProduct(flat(cloth.velocity));
+        VectorXd g;
+        problem.gradient(cloth.x, g);
         bool pattern_changed = false;
         BlockMatrix& a = problem.hessian(cloth.x, false, pattern_changed);
         if (!cloth.analysed || pattern_changed) factor.analyse(a, cloth.analysed);
         cloth.analysed = true;
-        // A/dt2, since the second derivative belongs to the problem and has no scale of its own.
+        // All by dt2: the second derivative as the problem has it.
         a.add_to_diagonal((1 + options.damping * dt) / (dt * dt) * problem.mass());
-        const std::vector<double> diagonal = stiffness_of_nodes(a);
-        hold.assign(n, 0.0);
-        face_velocity.assign(n, Vec3::Zero());
-        for (int i = 0; i < n; ++i) {
-            if (problem.pinned()[i]) {
-                b.segment<3>(3 * i).setZero();
-                continue;
-            }
-            b.segment<3>(3 * i) += dt * cloth.other_force[i];
-            NodeTouch& t = cloth.touch[i];
-            if (!t.on) continue;
-            face_velocity[i] = t.velocity(body_start, body_end, dt);
-            if (cloth.slides[i])
-                t.force = t.force.dot(t.normal) * t.normal +
-                          sliding_friction(t, cloth.velocity[i] - face_velocity[i], response.options().body_friction);
-            hold[i] = hold_share * dt * dt * diagonal[i];
-            const Mat3 held = held_directions(t, cloth.slides[i]);
-            a.add_diagonal(i, hold[i] / (dt * dt) * held);
-            b.segment<3>(3 * i) += dt * t.force + hold[i] * held * face_velocity[i];
+        VectorXd momentum = problem.mass().cwiseProduct(flat(cloth.velocity)) - dt * g;
+        for (int i = 0; i < n; ++i) momentum.segment<3>(3 * i) += dt * cloth.other_force[i];
+        find_holds(a);
+        // Friction of what slides already is known before the solve.
+        for (HeldTouch& h : cloth.touches)
+            if (h.slides) h.touch.force = sliding_force(h.touch, rate(h.touch, cloth.velocity));
+        Points v(n);
+        for (int round = 0; round < most_rounds; ++round) {
+            BlockMatrix held = a;
+            VectorXd b = momentum;
+            for (std::size_t k = 0; k < cloth.touches.size(); ++k) add_hold(cloth.touches[k], hold[k], held, b);
+            for (int i = 0; i < n; ++i)
+                if (pinned(i)) b.segment<3>(3 * i).setZero();
+            held.pin(problem.pinned());
+            if (!factor.factorise(held)) throw std::runtime_error("the motion of the cloth has no finite stiffness");
+            VectorXd solution;
+            factor.solve(b / (dt * dt), solution);
+            flat(v) = solution;
+            if (!let_go(v, round + 1 == most_rounds)) break;
         }
-        a.pin(problem.pinned());
-        if (!factor.factorise(a)) throw std::runtime_error("the motion of the cloth has no finite stiffness");
-        VectorXd v;
-        for (int i = 0; i < n; ++i)
-            if (!problem.pinned()[i]) b.segment<3>(3 * i) /= dt * dt;
-        factor.solve(b, v);
-        Points out(n);
-        flat(out) = v;
-        return out;
+        return v;
     }
 
-    /// A third of the trace of every diagonal block.
-    static std::vector<double> stiffness_of_nodes(const BlockMatrix& a) {
+    Vec3 sliding_force(const Touch& t, const Vec3& velocity) const {
+        const double normal = std::max(0.0, t.force.dot(t.normal));
+        const Vec3 along = along_face(t, velocity);
+        return normal * t.normal - (along.norm() > 0 ? Vec3(friction * normal / along.norm() * along) : Vec3::Zero());
+    }
+
+    void find_holds(const BlockMatrix& a) {
         const std::vector<int>& column = a.scalar_columns();
-        std::vector<double> d(a.block_rows());
-        for (int i = 0; i < a.block_rows(); ++i)
-            for (int c = 0; c < 3; ++c) d[i] += a.values()[column[3 * i + c]] / 3;
-        return d;
+        hold.clear();
+        for (const HeldTouch& h : cloth.touches) {
+            double compliance = 0;
+            for (int k = 0; k < 4; ++k) {
+                const int i = h.touch.point[k];
+                if (i >= n || pinned(i)) continue;
+                double trace = 0;
+                for (int c = 0; c < 3; ++c) trace += a.values()[column[3 * i + c]];
+                compliance += 3 * h.touch.weight[k] * h.touch.weight[k] / trace;
+            }
+            hold.push_back(compliance > 0 ? hold_share * dt * dt / compliance : 0);
+        }
     }
 
-    /// What held each node by now; what it cannot have been is let go. Takes what else contact did back: that is for
-    /// the response to do anew.
-    void let_go(Points& v) {
-        for (int i = 0; i < n; ++i) {
-            if (problem.pinned()[i]) continue;
-            const Vec3 relative = v[i] - face_velocity[i];
-            v[i] -= dt / mass(i) * cloth.other_force[i];
-            NodeTouch& t = cloth.touch[i];
-            if (!t.on) continue;
-            t.force -= hold[i] / dt * held_directions(t, cloth.slides[i]) * relative;
-            if (t.force.dot(t.normal) <= 0) {
-                t = {};
-                continue;
-            }
-            if (cloth.slides[i]) {
-                const Vec3 before = sliding_friction(t, cloth.velocity[i] - face_velocity[i], 1);
-                cloth.slides[i] = sliding_friction(t, relative, 1).dot(before) > 0; // friction has stopped it
-            } else {
-                cloth.slides[i] = within_cone(t, response.options().body_friction);
+    void add_hold(const HeldTouch& h, double strength, BlockMatrix& a, VectorXd& b) const {
+        const Touch& t = h.touch;
+        const Mat3 held = strength * held_directions(h);
+        Vec3 body = Vec3::Zero(); // the part of the rate that is the body's
+        for (int k = 0; k < 4; ++k)
+            if (const int i = t.point[k]; i >= n && t.weight[k] != 0)
+                body += t.weight[k] * (body_end[i - n] - body_start[i - n]) / dt;
+        for (int k = 0; k < 4; ++k) {
+            const int i = t.point[k];
+            if (i >= n) continue;
+            b.segment<3>(3 * i) += t.weight[k] * (dt * t.force - held * body);
+            for (int l = 0; l < 4; ++l) {
+                const int j = t.point[l];
+                if (j > i || j >= n) continue;
+                const Mat3 block = t.weight[k] * t.weight[l] / (dt * dt) * held;
+                if (i == j)
+                    a.add_diagonal(i, block);
+                else
+                    a.add_off_diagonal(j, a.find(i, j), block); // of one edge or triangle, which the cloth couples
             }
         }
+    }
+
+    /// Lets go what would pull at these velocities, and lets slide what friction does not hold; returns whether
+    /// something changed and the velocities have to be found anew. If not, or when this is the last time, the forces
+    /// are brought up to date.
+    bool let_go(const Points& v, bool last) {
+        bool changed = false;
+        std::vector<HeldTouch> kept;
+        std::vector<double> kept_hold;
+        std::vector<Vec3> force;
+        for (std::size_t k = 0; k < cloth.touches.size(); ++k) {
+            HeldTouch h = cloth.touches[k];
+            Touch now = h.touch;
+            now.force -= hold[k] / dt * held_directions(h) * rate(now, v);
+            if (!(now.force.dot(now.normal) > 0)) {
+                changed = true;
+                continue;
+            }
+            if (!h.slides && !now.welded && cut_to_cone(now, friction)) {
+                h.slides = changed = true;
+                h.touch.force = now.force;
+            }
+            kept.push_back(h);
+            kept_hold.push_back(hold[k]);
+            force.push_back(now.force);
+        }
+        cloth.touches = std::move(kept);
+        hold = std::move(kept_hold);
+        if (changed && !last) return true;
+        for (std::size_t k = 0; k < cloth.touches.size(); ++k) {
+            HeldTouch& h = cloth.touches[k];
+            if (h.slides && !h.touch.welded) { // until friction has stopped it
+                const Vec3 was = along_face(h.touch, rate(h.touch, cloth.velocity));
+                h.slides = along_face(h.touch, rate(h.touch, v)).dot(was) > 0 || was.isZero(0);
+            }
+            h.touch.force = force[k];
+        }
+        return false;
     }
 
     void slow(Points& v) const {
@@ -136,24 +184,29 @@ struct Step {
         }
     }
 
-    /// Adds what the response did to what held the nodes already.
+    /// Adds what the response did to what held the cloth already. A touch lasts while its pair is near, a weld until
+    /// it pulls.
     void take_up(const ResponseDone& done, const Points& v) {
-        for (int i = 0; i < n; ++i) {
-            NodeTouch& t = cloth.touch[i];
-            const NodeTouch& now = done.touch[i];
-            const bool fresh = !t.on;
-            const Vec3 held = t.force;
-            t = now;
-            if (!t.on) continue;
-            t.force += held;
-            if (!(t.force.dot(t.normal) > 0)) {
-                t.on = false;
-            } else if (fresh) {
-                const Vec3 relative = v[i] - t.velocity(body_start, body_end, dt);
-                cloth.slides[i] = std::isfinite(response.options().body_friction) &&
-                                  (relative - relative.dot(t.normal) * t.normal).norm() > stuck;
+        std::vector<HeldTouch> all;
+        auto old = cloth.touches.begin();
+        const auto keep_weld = [&] {
+            if (old->touch.welded) all.push_back(*old);
+            ++old;
+        };
+        for (const Touch& now : done.touches) {
+            while (old != cloth.touches.end() && before(old->touch, now)) keep_weld();
+            HeldTouch h{now, false};
+            if (old != cloth.touches.end() && !before(now, old->touch)) {
+                h.touch.force += old->touch.force;
+                h.slides = old->slides;
+                ++old;
+            } else {
+                h.slides = !now.welded && along_face(now, rate(now, v)).norm() > stuck;
             }
+            if (h.touch.force.dot(h.touch.normal) > 0) all.push_back(h);
         }
+        while (old != cloth.touches.end()) keep_weld();
+        cloth.touches = std::move(all);
         const Points last = std::move(cloth.other_force);
         cloth.other_force = done.other_force;
         for (int i = 0; i < n; ++i) { // impacts of a single step are no lasting force
@@ -168,8 +221,9 @@ struct Step {
 
 Points Moving::contact_force() const {
     Points force = other_force;
-    for (std::size_t i = 0; i < touch.size(); ++i)
-        if (touch[i].on) force[i] += touch[i].force;
+    for (const HeldTouch& h : touches)
+        for (int k = 0; k < 4; ++k)
+            if (h.touch.point[k] < int(x.size())) force[h.touch.point[k]] += h.touch.weight[k] * h.touch.force;
     return force;
 }
 
@@ -177,17 +231,17 @@ ResponseDone step(Problem& problem, Response& response, Moving& cloth, const Poi
                   const StepOptions& options) {
     const std::size_t n = cloth.x.size();
     cloth.velocity.resize(n, Vec3::Zero());
-    cloth.touch.resize(n);
-    cloth.slides.resize(n, 0);
     cloth.other_force.resize(n, Vec3::Zero());
     Step one{problem, response, cloth, body_end, factor, options};
     Points v = one.candidate();
-    one.let_go(v);
+    std::vector<double> inverse_mass(n, 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+        if (problem.pinned()[i]) continue;
+        inverse_mass[i] = 1 / one.mass(int(i));
+        v[i] -= options.time_step * inverse_mass[i] * cloth.other_force[i]; // which the response is to do anew
+    }
     one.slow(v);
-    std::vector<double> inverse_mass(n);
-    for (std::size_t i = 0; i < n; ++i) inverse_mass[i] = problem.pinned()[i] ? 0 : 1 / one.mass(int(i));
-    ResponseDone done =
-        response.respond({options.time_step, cloth.x, cloth.velocity, inverse_mass, body_end}, v);
+    ResponseDone done = response.respond({options.time_step, cloth.x, cloth.velocity, inverse_mass, body_end}, v);
     one.take_up(done, v);
     for (std::size_t i = 0; i < n; ++i) cloth.x[i] += options.time_step * v[i];
     cloth.velocity = std::move(v);

@@ -3,8 +3,8 @@
 
 // A cloth in motion: implicit Euler with velocities, one Newton step each (Baraff, Witkin: Large Steps in Cloth
 // Simulation, 1998), on any Problem; what it meets is left to a response. The forces of contact of the last step
-// stand in the solve, and nodes that faces of the body held are held in it, so that what leans on the body is at rest
-// when its forces are in balance, however stiff it is and however long the step.
+// stand in the solve, and what the body held is held in it by the method of multipliers (Hestenes 1969), so that what
+// leans on the body is at rest when its forces are in balance, however stiff it is and however long the step.
 
 #include "draping/algebra/cholesky.h"
 #include "draping/contact/response.h"
@@ -20,14 +20,19 @@ struct StepOptions {
     double max_motion = 0.01; ///< m, no point moves farther in one step; faster ones are slowed
 };
 
+/// A touch that lasts from step to step.
+struct HeldTouch {
+    Touch touch;
+    bool slides = false;
+};
+
 /// A cloth on its way, and what contact did to it in the last step. Starts with `x` alone.
 struct Moving {
     Points x;
-    Points velocity = {};   ///< m/s; empty: at rest
-    std::vector<NodeTouch> touch = {};
-    std::vector<char> slides = {}; ///< per node: along the face that it touches
-    Points other_force = {}; ///< N
-    bool analysed = false;   ///< the factor has the pattern of the problem's matrix
+    Points velocity = {};                ///< m/s; empty: at rest
+    std::vector<HeldTouch> touches = {}; ///< sorted
+    Points other_force = {};             ///< N per node, of all other contact
+    bool analysed = false;               ///< the factor has the pattern of the problem's matrix
 
     /// Force of contact on every node in the last step, N.
     Points contact_force() const;

@@ -141,8 +141,8 @@ TEST_CASE("constraint: holds a node where it meets a face, moves with it, and le
     for (int i = 0; i < 3; ++i) {
         CHECK(p.v[i].norm() == 0); // at once, without a bounce, and still
         CHECK(p.x[i].y() == Approx(o.thickness).epsilon(0.05));
-        CHECK(done.touch[i].on);
-        CHECK((done.touch[i].force - Vec3(0, mass * g, 0)).norm() < 1e-9);
+        CHECK(done.touches[i].point[0] == i);
+        CHECK((done.touches[i].force - Vec3(0, mass * g, 0)).norm() < 1e-9);
     }
     // The face rises at 0.1 m/s and slides at 0.2 m/s: friction takes the nodes along.
     TriMesh body = floor_face();
@@ -159,7 +159,7 @@ TEST_CASE("constraint: holds a node where it meets a face, moves with it, and le
     }
     CHECK(done.held == 0);
     CHECK(p.v[0].y() == Approx(0.1 - 50 * 1e-3 * g));
-    for (int i = 0; i < 3; ++i) CHECK(done.touch[i].force.norm() == 0);
+    CHECK(done.touches.empty()); // the floor is out of reach
 }
 
 TEST_CASE("constraint: edges of the body and the cloth itself are missed, where impulses stop them", "[responses]") {

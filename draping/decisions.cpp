@@ -3,21 +3,15 @@
 
 #include "geometry/bvh.h"
 #include "geometry/distance.h"
+#include "geometry/text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace toile {
 
 namespace {
-
-std::string text(const char* format, auto... values) {
-    char buffer[512];
-    std::snprintf(buffer, sizeof buffer, format, values...);
-    return buffer;
-}
 
 std::string contact_sentence(const DrapeFacts& f) {
     return text("contact of the cloth with itself was modelled: at the end %d pairs are within %.3g mm of "

@@ -5,11 +5,11 @@
 #include "geometry/bvh.h"
 #include "geometry/distance.h"
 #include "geometry/slice.h"
+#include "geometry/text.h"
 #include "sewing/avatar.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <set>
 #include <stdexcept>
@@ -91,12 +91,6 @@ bool hull_contains(const std::vector<Vec2>& points, const Vec2& p) {
         if (side.x() * to.y() - side.y() * to.x() < 0) return false;
     }
     return hull.size() > 2;
-}
-
-std::string text(const char* format, auto... values) {
-    char buffer[512];
-    std::snprintf(buffer, sizeof buffer, format, values...);
-    return buffer;
 }
 
 } // namespace

@@ -2,12 +2,12 @@
 #include "draping/where.h"
 
 #include "geometry/distance.h"
+#include "geometry/text.h"
 
 #include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <map>
 
@@ -16,9 +16,7 @@ namespace toile {
 namespace {
 
 std::string coordinates(const Vec3& p) {
-    char text[80];
-    std::snprintf(text, sizeof text, "(%.3f, %.3f, %.3f) m", p.x(), p.y(), p.z());
-    return text;
+    return text("(%.3f, %.3f, %.3f) m", p.x(), p.y(), p.z());
 }
 
 int panel_of_node(const Garment& g, int node) {
@@ -188,8 +186,7 @@ std::string open_seam(const Garment& g, const Points& x, const std::vector<std::
     const int k = widest_stitch(g, x);
     if (k < 0) return "";
     const Stitch& s = g.stitches[k];
-    char gap[32];
-    std::snprintf(gap, sizeof gap, "%.1f mm", 1e3 * (x[s.a] - seam_point(s, x)).norm());
+    const std::string gap = text("%.1f mm", 1e3 * (x[s.a] - seam_point(s, x)).norm());
     const std::string name =
         s.seam < int(seam_names.size()) ? seam_names[s.seam] : "seam " + std::to_string(s.seam);
     std::string text = name + " does not close: " + gap + " are left between " + place_of_node(g, x, s.a) +

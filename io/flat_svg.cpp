@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/flat_svg.h"
 
+#include "geometry/text.h"
 #include "io/write_file.h"
 #include "patterns/curve.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace toile {
@@ -15,9 +15,7 @@ namespace {
 constexpr double mm = 1000; ///< per metre
 
 std::string number(double x) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.2f", x);
-    std::string s = text;
+    std::string s = text("%.2f", x);
     s.erase(s.find_last_not_of('0') + 1);
     if (s.back() == '.') s.pop_back();
     return s == "-0" ? "0" : s;
@@ -46,10 +44,7 @@ std::string seam_colour(std::size_t seam) {
                  x = 1 - std::abs(std::fmod(hue, 2.0) - 1);
     const double channels[6][3] = {{1, x, 0}, {x, 1, 0}, {0, 1, x}, {0, x, 1}, {x, 0, 1}, {1, 0, x}};
     const double* c = channels[std::min(5, int(hue))];
-    char text[8];
-    std::snprintf(text, sizeof text, "#%02x%02x%02x", int(30 + 170 * c[0]), int(30 + 140 * c[1]),
-                  int(30 + 190 * c[2]));
-    return text;
+    return text("#%02x%02x%02x", int(30 + 170 * c[0]), int(30 + 140 * c[1]), int(30 + 190 * c[2]));
 }
 
 struct Frame {

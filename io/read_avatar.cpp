@@ -2,6 +2,7 @@
 #include "io/read_avatar.h"
 
 #include "geometry/solid.h"
+#include "geometry/text.h"
 
 #include <Eigen/Geometry>
 #include <assimp/Importer.hpp>
@@ -12,7 +13,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
@@ -31,9 +31,7 @@ struct Polygons {
 }
 
 std::string decimals(double value, int count) {
-    char text[64];
-    std::snprintf(text, sizeof text, "%.*f", count, value);
-    return text;
+    return text("%.*f", count, value);
 }
 
 std::string place(const Vec3& p) {

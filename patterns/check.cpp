@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "patterns/check.h"
 
+#include "geometry/text.h"
 #include "patterns/crossing.h"
 #include "patterns/curve.h"
 
@@ -8,33 +9,26 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <tuple>
 
 namespace toile {
 namespace {
 
-std::string formatted(const char* format, double x) {
-    char text[64];
-    std::snprintf(text, sizeof text, format, x);
-    return text;
-}
-
 /// A length as a person says it.
 std::string said(double metres) {
     if (!std::isfinite(metres)) return "no finite length";
-    if (metres < 0.001) return formatted("%.3g mm", metres * 1000);
-    if (metres < 1) return formatted("%.4g cm", metres * 100);
-    return formatted("%.4g m", metres);
+    if (metres < 0.001) return text("%.3g mm", metres * 1000);
+    if (metres < 1) return text("%.4g cm", metres * 100);
+    return text("%.4g m", metres);
 }
 
 std::string said(const Vec2& p) {
-    return "(" + formatted("%.1f", p.x() * 100) + ", " + formatted("%.1f", p.y() * 100) + ") cm";
+    return "(" + text("%.1f", p.x() * 100) + ", " + text("%.1f", p.y() * 100) + ") cm";
 }
 
 std::string percent(double share) {
-    return formatted("%.0f %%", share * 100);
+    return text("%.0f %%", share * 100);
 }
 
 std::string called(const Panel& panel) {
@@ -232,7 +226,7 @@ private:
         const double area = std::abs(signed_area(panel.outline)), round = length(panel.outline);
         if (area > 1e-6 * round * round) return true;
         error(capital(called(panel)) + " encloses no area: it has " + std::to_string(panel.outline.size()) +
-              " edges round " + formatted("%.3g cm2", area * 1e4) +
+              " edges round " + text("%.3g cm2", area * 1e4) +
               "; at least three edges round a surface were expected");
         return false;
     }
@@ -294,7 +288,7 @@ private:
         const auto fraction = [](double t) { return t >= 0 && t <= 1; };
         if (fraction(s.t0) && fraction(s.t1) && s.t0 != s.t1) return true;
         error(who + " takes edge " + std::to_string(s.edge) + " of " + called(panel) + " from " +
-              formatted("%g", s.t0) + " to " + formatted("%g", s.t1) +
+              text("%g", s.t0) + " to " + text("%g", s.t1) +
               "; two different fractions from 0 to 1 were expected");
         return false;
     }
@@ -393,9 +387,9 @@ private:
         const std::string on = "The elastic on edge " + std::to_string(e.span.edge) + " of " +
                                called(pattern_.panels[e.span.panel]);
         if (!(e.ratio > 0 && e.ratio <= 1))
-            error(on + " has ratio " + formatted("%g", e.ratio) + "; above 0 and at most 1 was expected");
+            error(on + " has ratio " + text("%g", e.ratio) + "; above 0 and at most 1 was expected");
         if (!(e.stiffness > 0 && std::isfinite(e.stiffness)))
-            error(on + " has stiffness " + formatted("%g", e.stiffness) +
+            error(on + " has stiffness " + text("%g", e.stiffness) +
                   " N; a number above 0 was expected");
     }
 

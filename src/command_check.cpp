@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "src/command_line.h"
 
+#include "geometry/text.h"
 #include "io/read_pattern.h"
 #include "patterns/check.h"
 #include "src/drape_input.h"
@@ -10,7 +11,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <ostream>
 
@@ -46,10 +46,8 @@ void print_seams(std::ostream& out, const Pattern& pattern) {
     out << "seams (length of both sides, ease):\n";
     for (const Seam& seam : measurable(pattern)) {
         const SeamLengths lengths = seam_lengths(pattern, seam);
-        char figures[96];
-        std::snprintf(figures, sizeof figures, "%9.1f mm %9.1f mm %7.1f %%", 1000 * lengths.a,
-                      1000 * lengths.b, 100 * lengths.ease);
-        out << figures << "  " << seam.name << '\n';
+        out << text("%9.1f mm %9.1f mm %7.1f %%  ", 1000 * lengths.a, 1000 * lengths.b, 100 * lengths.ease)
+            << seam.name << '\n';
     }
 }
 

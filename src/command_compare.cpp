@@ -2,12 +2,12 @@
 #include "src/command_line.h"
 
 #include "draping/compare.h"
+#include "geometry/text.h"
 #include "io/read_garment.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <cstdio>
 #include <memory>
 #include <ostream>
 
@@ -36,10 +36,9 @@ int compare_command(const CompareArguments& arguments, const Console& console) {
                     << std::endl;
         return exit_made;
     }
-    char text[160];
-    std::snprintf(text, sizeof text, "RMS %.4f mm, mean %.4f mm, max %.4f mm at (%.3f, %.3f, %.3f) m",
-                  1000 * c.rms, 1000 * c.mean, 1000 * c.max, c.where.x(), c.where.y(), c.where.z());
-    console.out << text << (c.same_triangles ? "; point by point" : "; surface to surface") << std::endl;
+    console.out << text("RMS %.4f mm, mean %.4f mm, max %.4f mm at (%.3f, %.3f, %.3f) m", 1000 * c.rms,
+                        1000 * c.mean, 1000 * c.max, c.where.x(), c.where.y(), c.where.z())
+                << (c.same_triangles ? "; point by point" : "; surface to surface") << std::endl;
     return exit_made;
 }
 

@@ -2,6 +2,7 @@
 #include "src/command_line.h"
 
 #include "geometry/parallel.h"
+#include "geometry/text.h"
 #include "src/quantity.h"
 #include "src/options.h"
 #include "src/pipeline.h"
@@ -43,24 +44,18 @@ std::string joined(const std::vector<std::string>& names) {
     return text;
 }
 
-std::string print(const char* format, double value) {
-    char text[48];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
-
 std::string percent(double share) {
-    return print("%.2f %%", 100 * share);
+    return text("%.2f %%", 100 * share);
 }
 
 /// The report in five lines.
 void summarise(std::ostream& out, const DrapeOutcome& outcome) {
     const auto r = nlohmann::json::parse(outcome.report);
     const auto& strain = r["strain"];
-    const std::string residual = r["residual"].is_null() ? "unknown" : print("%.1e", r["residual"]);
-    out << r["status"].get<std::string>() << ": residual " << residual << print(" of %.1e, ", r["tolerance"])
-        << r["nodes"] << " nodes, " << r["triangles"] << " triangles, "
-        << print("%.1f s\n", r["seconds"]["total"]);
+    const std::string residual = r["residual"].is_null() ? "unknown" : text("%.1e", r["residual"].get<double>());
+    out << r["status"].get<std::string>() << ": residual " << residual
+        << text(" of %.1e, ", r["tolerance"].get<double>()) << r["nodes"] << " nodes, " << r["triangles"] << " triangles, "
+        << text("%.1f s\n", r["seconds"]["total"].get<double>());
     out << "intersections: " << r["intersections"]["cloth_avatar"] << " with the body, "
         << r["intersections"]["cloth_cloth"] << " of the cloth with itself\n";
     out << "seams: "

@@ -2,6 +2,7 @@
 #include "src/command_line.h"
 
 #include "draping/inspect.h"
+#include "geometry/text.h"
 #include "io/read_garment.h"
 #include "io/report.h"
 #include "src/quantity.h"
@@ -11,7 +12,6 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include <cstdio>
 #include <memory>
 #include <ostream>
 
@@ -52,14 +52,9 @@ Json to_json(const Inspection& i) {
 }
 
 std::string row(const char* name, const Spread& s, double scale, const char* unit, double limit) {
-    char text[160];
-    std::snprintf(text, sizeof text, "  %-10s%8.3f to%8.3f, mean%8.3f, 99 %% within%8.3f %s", name,
-                  scale * s.min, scale * s.max, scale * s.mean, scale * s.p99, unit);
-    std::string line = text;
-    if (limit > 0) {
-        std::snprintf(text, sizeof text, " (limit %.3g)", scale * limit);
-        line += text;
-    }
+    std::string line = text("  %-10s%8.3f to%8.3f, mean%8.3f, 99 %% within%8.3f %s", name, scale * s.min,
+                            scale * s.max, scale * s.mean, scale * s.p99, unit);
+    if (limit > 0) line += text(" (limit %.3g)", scale * limit);
     return line + '\n';
 }
 
@@ -84,13 +79,9 @@ void print(std::ostream& out, const Inspection& i) {
         << row("warp", s.warp, 100, "%", s.limit_warp) << row("weft", s.weft, 100, "%", s.limit_weft)
         << row("principal", s.principal, 100, "%", 0)
         << row("shear", s.shear, 180 / EIGEN_PI, "degrees", s.limit_shear);
-    char text[160];
-    std::snprintf(text, sizeof text, "compressed by more than 2 %%: %.2f %% of the area off eased seams\n",
-                  100 * s.compressed_area);
-    out << text;
-    std::snprintf(text, sizeof text, "angle defect: mean %.4f, largest %.4f rad\n",
-                  i.developability.angle_defect_mean, i.developability.angle_defect_max);
-    out << text;
+    out << text("compressed by more than 2 %%: %.2f %% of the area off eased seams\n", 100 * s.compressed_area)
+        << text("angle defect: mean %.4f, largest %.4f rad\n", i.developability.angle_defect_mean,
+                i.developability.angle_defect_max);
 }
 
 TriMesh body_of(const InspectArguments& a, const ReadGarment& garment, std::vector<std::string>& notes) {

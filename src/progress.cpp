@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "src/progress.h"
 
+#include "geometry/text.h"
+
 #include <cmath>
 #include <csignal>
-#include <cstdio>
 #include <ostream>
 
 namespace toile {
@@ -15,26 +16,20 @@ void remember(int) {
     interrupted = 1;
 }
 
-std::string print(const char* format, double value) {
-    char text[48];
-    std::snprintf(text, sizeof text, format, value);
-    return text;
-}
-
 std::string time_left(double seconds) {
     if (!std::isfinite(seconds)) return "";
-    if (seconds < 60) return print("  %.0f s left", std::ceil(seconds));
-    return print("  %.0f min left", std::ceil(seconds / 60));
+    if (seconds < 60) return text("  %.0f s left", std::ceil(seconds));
+    return text("  %.0f min left", std::ceil(seconds / 60));
 }
 
 } // namespace
 
 std::string progress_text(const DrapeProgress& p) {
-    std::string text = p.stage;
-    if (p.levels > 1) text += "  level " + std::to_string(p.level + 1) + " of " + std::to_string(p.levels);
-    if (std::isfinite(p.residual)) text += print("  residual %.1e", p.residual);
-    text += print("  %.0f %%", std::floor(100 * p.done));
-    return text + time_left(p.seconds_left);
+    std::string line = p.stage;
+    if (p.levels > 1) line += "  level " + std::to_string(p.level + 1) + " of " + std::to_string(p.levels);
+    if (std::isfinite(p.residual)) line += text("  residual %.1e", p.residual);
+    line += text("  %.0f %%", std::floor(100 * p.done));
+    return line + time_left(p.seconds_left);
 }
 
 void ProgressLine::show(const DrapeProgress& progress) {

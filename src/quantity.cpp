@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "src/quantity.h"
 
+#include "geometry/text.h"
 #include "src/exit_code.h"
 
 #include <CLI/CLI.hpp>
 
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 namespace toile {
@@ -27,9 +27,7 @@ struct Quantity {
 };
 
 std::string show_duration(double seconds) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%g s", seconds);
-    return text;
+    return text("%g s", seconds);
 }
 
 const Quantity length_of_something{
@@ -86,16 +84,12 @@ double parse_duration(const std::string& text) { return parse(duration, text); }
 double parse_size(const std::string& text) { return parse(size_of_memory, text); }
 
 std::string show_length(double metres) {
-    char text[32];
     const bool large = std::abs(metres) >= 1;
-    std::snprintf(text, sizeof text, "%.4g %s", large ? metres : 1000 * metres, large ? "m" : "mm");
-    return text;
+    return text("%.4g %s", large ? metres : 1000 * metres, large ? "m" : "mm");
 }
 
 std::string show_size(double bytes) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.4g MB", bytes / 1e6);
-    return text;
+    return text("%.4g MB", bytes / 1e6);
 }
 
 void add_length(CLI::App& command, const std::string& name, double& metres, double low, double high,

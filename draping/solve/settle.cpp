@@ -91,6 +91,13 @@ struct Run {
         return solve_with_kept(h, g, dx) || solve_directly(h, g, dx);
     }
 
+    /// The energy when all go a share of the way d.
+    double value_at(const Points& x, const VectorXd& d, double share) {
+        Points trial = x;
+        move(trial, d, share);
+        return problem.value(trial);
+    }
+
     /// One pair in the way need not hold up all the cloth: lets every point go its own share of the way. Returns the
     /// share of the new dx that is feasible, or 0 and dx as it was when going t of the whole is as good.
     double part(const Points& x, const VectorXd& g, const std::vector<double>& shares, double t, VectorXd& dx) {
@@ -98,15 +105,10 @@ struct Run {
         for (std::size_t i = 0; i < shares.size(); ++i) parted.segment<3>(3 * i) *= shares[i];
         const double slope = g.dot(parted);
         if (!(slope < 0)) return 0;
-        const auto value_at = [&](const VectorXd& d, double share) {
-            Points trial = x;
-            move(trial, d, share);
-            return problem.value(trial);
-        };
         double feasible = problem.feasible_step(x, parted);
-        const double whole = value_at(dx, t);
+        const double whole = value_at(x, dx, t);
         for (int cut = 0; cut < 3; ++cut, feasible *= 0.5) {
-            const double value = value_at(parted, feasible);
+            const double value = value_at(x, parted, feasible);
             if (value >= whole || value > result.energy + sufficient * feasible * slope) continue;
             dx = std::move(parted);
             return feasible;
@@ -128,16 +130,11 @@ struct Run {
         if (!(h(0, 0) > 0 && h.determinant() > 1e-3 * h(0, 0) * h(1, 1))) return;
         const Vec2 best = -h.inverse() * slope;
         if (best[0] < 1) return;
-        const auto value_of = [&](const VectorXd& d) {
-            Points trial = x;
-            move(trial, d, 1);
-            return problem.value(trial);
-        };
         const VectorXd further = (best[0] - 1) * dx + best[1] * last;
-        const double plain = value_of(dx);
+        const double plain = value_at(x, dx, 1);
         for (const double share : {1.0, 0.5, 0.25}) {
             VectorXd d = dx + share * further;
-            if (longest(d) > options.max_step || problem.feasible_step(x, d) < 1 || value_of(d) >= plain) continue;
+            if (longest(d) > options.max_step || problem.feasible_step(x, d) < 1 || value_at(x, d, 1) >= plain) continue;
             dx = std::move(d);
             return;
         }

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/settle_level.h"
+
+#include "draping/hooks.h"
+#include "draping/take_apart.h"
+#include "draping/where.h"
+#include "geometry/text.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toile {
+
+namespace {
+
+constexpr double soft_limit = 0.7;             // turn of the strain limits' barrier that cloth beyond them can meet
+constexpr double hard_limit = 0.9;             // and the one to end with, hardened further where the cloth needs it
+constexpr double hardest_limit = 0.998;        // from there on limits are not hardened but
+constexpr double least_tighter = 2.5e-4;       // drawn in by such shares of theirs
+constexpr double most_tighter = 2e-3;
+constexpr double inner_stitch_stiffness = 1e5; // N/m, of stitches to the inside of an edge of closed seams
+constexpr double coarse_residual = 10;         // to which levels that are not the last are settled
+constexpr int untangle_every = 20;             // iterations after which cloth that did not come apart is tried again,
+constexpr int most_untangles = 5;              // in each pass
+constexpr int most_iterations = 1000;          // of the last pass of a level
+
+/// What acts on a closed garment at every level beside cloth, contact and weight: pins, bands, hooks that
+/// stay and stitches that cannot become shared nodes.
+void add_fixtures(DrapeRun& run, ClothProblem& problem) {
+    for (const auto& [node, place] : pinned_places(run.staging, run.level, run.garment)) {
+        problem.pin(node);
+        run.x[node] = place;
+    }
+    problem.elastics = elastic_segments(run.staging, run.garment);
+    problem.hooks = hooks_on(run, run.garment, run.held, problem);
+    for (const Stitch& s : run.garment.stitches)
+        problem.stitches.push_back({s.a, s.b, s.r, inner_stitch_stiffness, 1e3});
+}
+
+/// Bands are softened with the cloth, which they would crumple otherwise.
+void soften(const DrapeRun& run, ClothProblem& problem, double softness) {
+    problem.sheet().softness = softness;
+    problem.elastics = elastic_segments(run.staging, run.garment);
+    for (ElasticSegment& s : problem.elastics) s.stiffness *= softness;
+}
+
+void note_release(DrapeRun& run) {
+    const std::map<std::string, double> now = label_heights(run.garment, run.x, run.carried);
+    for (const std::string& label : run.carried)
+        run.facts.hooks.push_back({label, false, run.carried_at[label], now.at(label), 0});
+}
+
+/// Says where a drape that has not converged is held up: too little cloth, what blocks the step, or the worst
+/// force.
+void note_where(DrapeRun& run, const ClothProblem& problem, const SettleResult& r) {
+    std::string& where = run.result.where;
+    where = text("residual %.3g on ", r.residual) + place_of_node(run.garment, run.x, problem.worst_node());
+    if (r.end == SettleEnd::stalled && problem.blocking_pair() >= 0)
+        where += "; no step is possible, " +
+                 place_of_pair(run.garment, run.x, problem.contact().pair(problem.blocking_pair())) + " is in the way";
+    const Tightness t = find_tightness(run.garment, run.x, run.fabrics);
+    if (t.triangle < 0) return;
+    const std::string stretched =
+        place_of_triangle(run.garment, run.x, t.triangle) +
+        text(" is stretched by %.1f %% along the %s, more than the %.1f %% that ", 100 * t.strain,
+             t.warp ? "warp" : "weft", 100 * t.limit) +
+        run.fabrics[run.garment.panel_of_triangle[t.triangle]].name + " allows";
+    if (t.missing > tight && run.result.status == DrapeStatus::stalled &&
+        touches_body(problem, run.x, run.x[run.garment.nodes(t.triangle)[0]].y(), run.edge_length()))
+        run.result.status = DrapeStatus::too_small;
+    where = stretched + (t.missing > tight ? text("; %.1f cm are missing round the garment there", 100 * t.missing)
+                                           : "; " + where);
+}
+
+void note_facts(DrapeRun& run, const ClothProblem& problem) {
+    DrapeFacts& f = run.facts;
+    f.touch = count_touching(problem.contact(), run.x);
+    f.friction = run.result.friction;
+    f.clearance = run.options.clearance;
+    f.pins = int(pinned_places(run.staging, run.level, run.garment).size());
+    f.band_segments = int(problem.elastics.size());
+    for (const ElasticSegment& s : problem.elastics) {
+        f.band_rest += s.rest;
+        f.band_length += (run.x[s.b] - run.x[s.a]).norm();
+        f.band_pull = std::max(f.band_pull, s.stiffness * strain(s, run.x));
+    }
+    f.inner_stitches = int(run.garment.stitches.size());
+    f.inner_gap = seam_gap_max(run.garment, run.x);
+}
+
+/// Settles on where cloth at rest is beyond its limits: these are hardened, and where the coordinates' last
+/// digits no longer tell the forces of harder ones, drawn in by what the cloth is beyond them.
+SettleResult settle_within_limits(DrapeRun& run, ClothProblem& problem, Cholesky& factor, const SettleOptions& o,
+                                  SettleResult r) {
+    double turn = hard_limit;
+    const auto again = [&](double tighter) {
+        problem.limit_strain(turn, tighter);
+        r = run.settle_some(problem, run.x, factor, o);
+    };
+    const auto beyond = [&] { return !run.stopped && !problem.beyond_limits(run.x).empty(); };
+    while (beyond() && turn < hardest_limit) {
+        turn = 1 - (1 - turn) / 3;
+        again(0);
+    }
+    for (double tighter = least_tighter; beyond() && tighter < most_tighter; tighter *= 2) again(tighter);
+    return r;
+}
+
+} // namespace
+
+void settle_level(DrapeRun& run) {
+    const auto start = DrapeRun::Clock::now();
+    const ContactOptions contact = run.contact_options();
+    ClothProblem problem(run.garment, run.level_fabrics(), run.body, contact);
+    problem.gravity = run.options.gravity;
+    add_fixtures(run, problem);
+    Cholesky factor;
+    const bool first = run.level == 0;
+    const std::vector<HookSpring> kept = problem.hooks;
+    if (first) problem.hooks = hooks_on(run, run.garment, all_hooked(run), problem);
+    run.begin("settle", 0.85 * std::pow(4.0, run.level) / ((std::pow(4.0, run.levels()) - 1) / 3));
+    problem.rest_here(run.x, run.result.friction, run.facts.restarted);
+    problem.sheet().softness = run.facts.restarted ? 1 : first ? 1.0 / 16 : 1.0 / 4;
+    bool tangled = true;
+    const auto untangle = [&] {
+        tangled = !take_apart_or_leave_out(run, problem.contact());
+        clear_of_body(run, problem, factor);
+        run.stage = "settle";
+    };
+    untangle();
+
+    struct Pass {
+        double softness;
+        int iterations;
+        bool hooked;
+    };
+    // A carrying edge finds the height at which it fits before friction may hold it, since a tight band on a
+    // slight cone is held by friction at any height.
+    std::vector<Pass> passes{{1.0 / 4, 8, false}, {1, most_iterations, false}};
+    if (first)
+        passes = {{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, run.last_level() ? most_iterations : 150, false}};
+    if (run.facts.restarted) passes = {{1, most_iterations, false}};
+    if (problem.hooks.size() > kept.size()) {
+        passes.insert(passes.end() - 1, {1, 100, true});
+        problem.friction.coefficient = 0;
+    }
+    SettleResult r;
+    for (const Pass& pass : passes) {
+        if (run.stopped) break;
+        const bool last_pass = &pass == &passes.back();
+        soften(run, problem, pass.softness);
+        if (!pass.hooked && problem.hooks.size() > kept.size()) {
+            note_release(run);
+            problem.hooks = kept;
+            problem.rest_here(run.x, run.result.friction);
+        }
+        SettleOptions o;
+        o.tolerance = run.last_level() && last_pass ? run.options.tolerance : coarse_residual;
+        o.max_iterations = pass.iterations;
+        o.exact_below = last_pass ? 20 : 0;
+        if (pass.softness == 1 || !first) problem.limit_strain(last_pass && run.last_level() ? hard_limit : soft_limit);
+        // What did not come apart may do so when the cloth has moved.
+        for (int k = 0; tangled && k < most_untangles && !run.stopped; ++k) {
+            SettleOptions some = o;
+            some.max_iterations = std::min(o.max_iterations, untangle_every);
+            run.settle_some(problem, run.x, factor, some);
+            untangle();
+        }
+        r = run.settle_some(problem, run.x, factor, o);
+        if (last_pass && run.last_level()) r = settle_within_limits(run, problem, factor, o, r);
+    }
+    run.result.residual = r.residual;
+    run.result.barrier = {contact.body.distance, contact.body.stiffness, contact.cloth.stiffness};
+    if (run.last_level()) {
+        const int beyond = int(problem.beyond_limits(run.x).size());
+        note_facts(run, problem);
+        if (run.stopped || (run.iterations_left <= 0 && beyond == 0))
+            run.result.status = DrapeStatus::limit;
+        else if (!run.grown)
+            run.result.status = DrapeStatus::too_small;
+        else if (r.end == SettleEnd::settled && beyond == 0)
+            run.result.status = DrapeStatus::converged;
+        else
+            run.result.status = DrapeStatus::stalled;
+        if (run.result.status != DrapeStatus::converged) note_where(run, problem, r);
+        if (beyond > 0)
+            run.result.warnings.push_back(
+                text("%d triangles are stretched beyond their fabric's limit", beyond));
+    }
+    run.book(text("settle %g mm", 1e3 * run.edge_length()), start);
+}
+
+} // namespace toile

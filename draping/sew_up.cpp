@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/sew_up.h"
+
+#include "draping/pull_shut.h"
+#include "geometry/text.h"
+
+#include <cmath>
+#include <tuple>
+
+namespace toile {
+
+namespace {
+
+/// Closes the stitches that are as good as closed and leaves the others open.
+void close_what_is_closed(DrapeRun& run, const Garment& open, const Points& x) {
+    Garment closable = open;
+    const auto gapes = [&](const Stitch& s) {
+        return stitch_gap(s, x) >= weld_gap;
+    };
+    std::erase_if(closable.stitches, gapes);
+    std::vector<int> map;
+    run.garment = close_seams(closable, &map);
+    for (Stitch s : open.stitches) {
+        if (!gapes(s)) continue;
+        s.a = map[s.a], s.b = {map[s.b[0]], map[s.b[1]]};
+        run.garment.stitches.push_back(s);
+    }
+    run.x = merge(run.garment, map, x);
+}
+
+std::vector<bool> pinned_panels(const DrapeRun& run) {
+    std::vector<bool> pinned(run.staging.levels[0].garment.panel_names.size(), false);
+    for (const Pin& pin : run.staging.pins) pinned[pin.span.panel] = true;
+    return pinned;
+}
+
+void note_pushes(DrapeRun& run, const PlacedClear& placed) {
+    const std::vector<std::string>& names = run.staging.levels[0].garment.panel_names;
+    for (const PanelPush& p : placed.pushed)
+        run.result.decisions.push_back(text("panel \"%s\" was moved %.0f mm %s before sewing",
+                                            names[p.panel].c_str(), 1e3 * p.push.norm(),
+                                            p.from_body ? "out of the body" : "clear of another panel"));
+}
+
+Start place(const DrapeRun& run, double lift, const std::vector<bool>& outside = {}) {
+    Points lifted = run.laid.x;
+    for (Vec3& p : lifted) p.y() += lift;
+    PlaceOptions o;
+    o.fixed = pinned_panels(run);
+    o.outside = outside;
+    return {lift, place_clear(run.staging.levels[0].garment, lifted, run.body, o)};
+}
+
+} // namespace
+
+void lay(DrapeRun& run) {
+    const StagedLevel& staged = run.staging.levels[0];
+    LayOptions o;
+    o.fixed = pinned_panels(run);
+    run.laid = lay_anew(staged.garment, staged.placed, run.body, o);
+    for (const LaidPanel& p : run.laid.moved)
+        run.result.decisions.push_back(
+            text("panel \"%s\" was moved %.0f mm and turned %.0f degrees before sewing, to what it is sewn to",
+                 staged.garment.panel_names[p.panel].c_str(), 1e3 * p.moved, double(p.turned * 180 / EIGEN_PI)));
+}
+
+void sew_coarsest(DrapeRun& run) {
+    const auto start = DrapeRun::Clock::now();
+    const StagedLevel& staged = run.staging.levels[0];
+    run.result.levels.push_back({staged.edge_length, int(staged.garment.uv.size()), 0, 0, 0});
+    run.begin("sew", 0.15);
+    if (!run.fits_memory(0)) {
+        run.open = true;
+        close_what_is_closed(run, staged.garment, staged.placed);
+        return;
+    }
+    run.garment = close_seams(staged.garment, &run.joined);
+    Sewn sewn;
+    const auto closes = [&](const Start& from, const Sewing& way) {
+        Sewn next = pull_shut(run, from, way);
+        next.crossings = crossings_when_joined(run, next.x);
+        const auto badness = [](const Sewn& s) { return std::tuple(s.open, s.open ? 0 : s.crossings, s.gap); };
+        if (sewn.x.empty() || badness(next) < badness(sewn)) sewn = std::move(next);
+        return run.stopped || (!sewn.open && sewn.crossings == 0);
+    };
+    const Start as_filed = place(run, 0);
+    bool done = closes(as_filed, {true, {}});
+    done = done || closes(as_filed, {false, {}});
+    const Waiting waiting =
+        done || !sewn.open ? Waiting()
+                           : what_waits(staged.garment, sewn.x, run.body, forced_share * run.edge_length());
+    if (!done && sewn.open && run.staging.pins.empty())
+        if (const double lift = free_height(staged.garment, run.laid.x, run.body); lift != 0) {
+            const Start lifted = place(run, lift);
+            done = closes(lifted, {true, {}}) || closes(lifted, {false, {}});
+        }
+    if (!done && sewn.open && !waiting.seams.empty()) closes(place(run, 0, waiting.outside), {true, waiting});
+    run.x = merge(run.garment, run.joined, sewn.x);
+    if (sewn.start.lift != 0)
+        run.result.decisions.push_back(
+            text("the garment was moved %s by %.0f mm before sewing: where the file puts it threads of seams that "
+                 "could not close pass through the body",
+                 sewn.start.lift > 0 ? "up" : "down", 1e3 * std::abs(sewn.start.lift)));
+    note_pushes(run, sewn.start.placed);
+    run.open = sewn.open;
+    if (run.open) { // joined by force it would cut itself or the body
+        run.result.status = sewn.status;
+        run.result.where = sewn.where;
+        close_what_is_closed(run, staged.garment, sewn.x);
+    } else if (!run.stopped) {
+        if (!sewn.way.waiting.seams.empty())
+            run.result.decisions.push_back("seams with the body in their way were sewn when the others were closed "
+                                           "and the cloth hung down: all at once could not close");
+        if (!sewn.way.self && sewn.crossings == 0)
+            run.result.decisions.push_back("cloth passed through itself while seams closed: with contact "
+                                           "between panels a seam could not close; the sewn garment does "
+                                           "not cross itself (0 pairs)");
+        if (sewn.gap >= weld_gap)
+            run.result.decisions.push_back(
+                text("seams were joined when %.1f mm were left of them, on a mesh of %.0f mm: the rest closed "
+                     "slowly, and what was joined crosses itself in %d pairs",
+                     1e3 * sewn.gap, 1e3 * run.edge_length(), sewn.crossings));
+    }
+    run.book("sew", start);
+}
+
+} // namespace toile

@@ -7,26 +7,11 @@
 // and says what each cannot do.
 
 #include "draping/contact/contact.h"
+#include "draping/contact/response_kind.h"
 
 #include <memory>
-#include <string>
 
 namespace toile {
-
-enum class ContactResponse { barrier, constraint, penalty, impulse, rigid };
-
-/// "barrier", "constraint", "penalty", "impulse", "rigid".
-const char* to_string(ContactResponse response);
-/// Throws std::invalid_argument with the names when there is no such response.
-ContactResponse contact_response(const std::string& name);
-
-/// What is promised of a start without crossings.
-enum class Guarantee {
-    no_crossing,     ///< cloth passes neither through the body nor through itself
-    no_node_in_body, ///< no node of the cloth passes through a face of the body
-    none
-};
-const char* to_string(Guarantee guarantee); ///< as above
 
 struct ResponseOptions {
     double thickness = 0.5e-3;  ///< m, kept between the cloth and what it touches

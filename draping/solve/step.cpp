@@ -84,6 +84,7 @@ struct Step {
             for (int i = 0; i < n; ++i)
                 if (pinned(i)) b.segment<3>(3 * i).setZero();
             held.pin(problem.pinned());
+            ++cloth.factorisations;
             if (!factor.factorise(held)) throw std::runtime_error("the motion of the cloth has no finite stiffness");
             VectorXd solution;
             factor.solve(b / (dt * dt), solution);
@@ -266,18 +267,20 @@ RestResult come_to_rest(Problem& problem, Response& response, Moving& cloth, Cho
                         const RestOptions& options) {
     RestResult r;
     const Points body = response.body();
+    const int factorised = cloth.factorisations;
     double mass = 0;
     for (int i = 0; i < problem.points(); ++i) mass += problem.mass()[3 * i];
     while (r.steps < options.max_steps) {
-        r.last = step(problem, response, cloth, body, factor, options.step);
+        const ResponseDone done = step(problem, response, cloth, body, factor, options.step);
         ++r.steps;
-        r.unresolved += r.last.unresolved > 0;
+        r.unresolved += done.unresolved > 0;
         r.residual = residual(problem, cloth);
         r.speed = std::sqrt(2 * kinetic_energy(problem, cloth) / mass);
         r.rested = r.residual <= options.tolerance && r.speed <= options.speed;
         r.stopped = options.progress && !options.progress(r.steps, r.residual);
         if (r.rested || r.stopped) break;
     }
+    r.factorisations = cloth.factorisations - factorised;
     return r;
 }
 

@@ -33,6 +33,7 @@ struct Moving {
     std::vector<HeldTouch> touches = {}; ///< sorted
     Points other_force = {};             ///< N per node, of all other contact
     bool analysed = false;               ///< the factor has the pattern of the problem's matrix
+    int factorisations = 0;              ///< so far
 
     /// Force of contact on every node in the last step, N.
     Points contact_force() const;
@@ -62,7 +63,7 @@ struct RestResult {
     double residual = 0;
     double speed = 0;   ///< m/s, root of the mean square over the mass
     int steps = 0;
-    ResponseDone last;  ///< of the last step
+    int factorisations = 0;
     int unresolved = 0; ///< steps that left impacts unresolved
 };
 

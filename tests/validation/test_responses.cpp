@@ -326,7 +326,7 @@ TEST_CASE("cloth dropped on a spike, a needle and an edge ends without a crossin
             for (int i = 0; i < 300; ++i) {
                 const ResponseDone done = s.step_on();
                 unresolved += done.unresolved;
-                met += done.impulses + done.zones + done.repulsions > 0;
+                met += done.impulses + done.zones + done.repulsions > 0 || !s.cloth.touches.empty();
                 if (i % 10 != 9) continue;
                 const IntersectionCount n = s.crossings(scene.body.triangles);
                 REQUIRE(n.cloth_avatar + n.cloth_cloth == 0);

@@ -78,7 +78,8 @@ TEST_CASE("steps: on a sphere the forces of contact bear the weight", "[response
         o.step.damping = 10;
         o.max_steps = 2000;
         const RestResult r = come_to_rest(s.problem, *s.response, s.cloth, s.factor, o);
-        std::printf("%s: residual %g speed %g steps %d rested %d\n", to_string(kind), r.residual, r.speed, r.steps, r.rested);
+        CHECK(r.rested);
+        CHECK(r.residual <= 1e-3);
         Vec3 force = Vec3::Zero();
         for (const Vec3& f : s.cloth.contact_force()) force += f;
         CHECK((force - Vec3(0, weight(s.problem), 0)).norm() < 0.05 * weight(s.problem));
@@ -89,14 +90,15 @@ TEST_CASE("steps: on a sphere the forces of contact bear the weight", "[response
 TEST_CASE("steps: a sheet slides on a slope from the angle of friction on", "[responses]") {
     const double angle = 0.4, limit = std::tan(angle);
     for (const ContactResponse kind : {ContactResponse::constraint, ContactResponse::impulse})
-        for (const double share : {0.5, 0.95, 1.05}) {
+        for (const double share : {0.5, 0.9, 0.95, 0.98, 1.02, 1.05, 1.1}) {
             INFO(to_string(kind) << " with " << share << " of what holds");
             DroppedSheet s = on_slope(angle, kind, share * limit);
-            for (int i = 0; i < 150; ++i) s.step_on();
+            for (int i = 0; i < 400; ++i) s.step_on();
             const Vec3 down(std::cos(angle), -std::sin(angle), 0);
             double speed = 0;
             for (const Vec3& v : s.cloth.velocity) speed += v.dot(down) / double(s.cloth.velocity.size());
-            const double expected = g * (std::sin(angle) - share * limit * std::cos(angle)) * 150 * s.options.time_step;
+            std::printf("%s %g: %g  %g\n", to_string(kind), share, speed, g*(std::sin(angle) - share * limit * std::cos(angle)) * 400 * s.options.time_step);
+            const double expected = g * (std::sin(angle) - share * limit * std::cos(angle)) * 400 * s.options.time_step;
             CHECK(speed == Approx(std::max(0.0, expected)).margin(1e-3).epsilon(0.05));
         }
 }

@@ -12,13 +12,18 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double hold_share = 100; // of the nodes' own entries in the matrix, with which touches hold
-constexpr double stuck = 1e-6;     // m/s, below which a touch does not slide
-constexpr int most_rounds = 4;     // solves of a step, until every touch that slides or pulls is known
+constexpr double stuck = 1e-5;     // m/s, below which a touch does not slide
+constexpr double stopping = 0.5;   // of its speed, that friction takes from a node in a step near its stop
+constexpr int most_rounds = 2;     // solves of a step, until every touch that slides or pulls is known
 
-/// The directions that a touch holds: the normal, or all while it does not slide.
-Mat3 held_directions(const HeldTouch& h) {
-    return h.slides ? Mat3(h.touch.normal * h.touch.normal.transpose()) : Mat3::Identity();
-}
+/// What a touch resists the rate of its places with in the solve, kg: along the normal and along the face.
+struct Hold {
+    double normal = 0, along = 0;
+
+    Mat3 matrix(const Vec3& n) const {
+        return along * Mat3::Identity() + (normal - along) * n * n.transpose();
+    }
+};
 
 Vec3 along_face(const Touch& t, const Vec3& v) { return v - v.dot(t.normal) * t.normal; }
 
@@ -42,7 +47,7 @@ struct Step {
     int n = problem.points();
     double dt = options.time_step;
     Points body_start = response.body();
-    std::vector<double> hold = {}; ///< kg, of each touch in the solve
+    std::vector<Hold> hold = {}; ///< of each touch
     double friction = response.options().body_friction;
 
     double mass(int i) const { return problem.mass()[3 * i]; }
@@ -73,14 +78,11 @@ struct Step {
         VectorXd momentum = problem.mass().cwiseProduct(flat(cloth.velocity)) - dt * g;
         for (int i = 0; i < n; ++i) momentum.segment<3>(3 * i) += dt * cloth.other_force[i];
         find_holds(a);
-        // Friction of what slides already is known before the solve.
-        for (HeldTouch& h : cloth.touches)
-            if (h.slides) h.touch.force = sliding_force(h.touch, rate(h.touch, cloth.velocity));
         Points v(n);
         for (int round = 0; round < most_rounds; ++round) {
             BlockMatrix held = a;
             VectorXd b = momentum;
-            for (std::size_t k = 0; k < cloth.touches.size(); ++k) add_hold(cloth.touches[k], hold[k], held, b);
+            for (std::size_t k = 0; k < cloth.touches.size(); ++k) add_hold(cloth.touches[k].touch, hold[k], held, b);
             for (int i = 0; i < n; ++i)
                 if (pinned(i)) b.segment<3>(3 * i).setZero();
             held.pin(problem.pinned());
@@ -94,31 +96,36 @@ struct Step {
         return v;
     }
 
-    Vec3 sliding_force(const Touch& t, const Vec3& velocity) const {
-        const double normal = std::max(0.0, t.force.dot(t.normal));
-        const Vec3 along = along_face(t, velocity);
-        return normal * t.normal - (along.norm() > 0 ? Vec3(friction * normal / along.norm() * along) : Vec3::Zero());
-    }
-
     void find_holds(const BlockMatrix& a) {
         const std::vector<int>& column = a.scalar_columns();
         hold.clear();
-        for (const HeldTouch& h : cloth.touches) {
-            double compliance = 0;
+        for (HeldTouch& h : cloth.touches) {
+            double compliance = 0, mobility = 0;
             for (int k = 0; k < 4; ++k) {
                 const int i = h.touch.point[k];
                 if (i >= n || pinned(i)) continue;
                 double trace = 0;
                 for (int c = 0; c < 3; ++c) trace += a.values()[column[3 * i + c]];
+                mobility += h.touch.weight[k] * h.touch.weight[k] / mass(i);
                 compliance += 3 * h.touch.weight[k] * h.touch.weight[k] / trace;
             }
-            hold.push_back(compliance > 0 ? hold_share * dt * dt / compliance : 0);
+            const double most = compliance > 0 ? hold_share * dt * dt / compliance : 0;
+            hold.push_back({most, most});
+            h.began = false;
+            if (!h.slides) continue;
+            // Near its stop, friction is a damper that gives Coulomb's force at the speed of the last step: the force
+            // itself, whose direction turns at once, would keep the cloth moving to and fro.
+            const Vec3 sliding = along_face(h.touch, rate(h.touch, cloth.velocity));
+            const double normal = h.touch.force.dot(h.touch.normal), damper = dt * friction * normal / sliding.norm();
+            h.touch.force = normal * h.touch.normal;
+            const bool far_from_stop = damper * mobility < stopping;
+            hold.back().along = far_from_stop ? 0 : std::min(most, damper);
+            if (far_from_stop) h.touch.force -= damper / dt * sliding;
         }
     }
 
-    void add_hold(const HeldTouch& h, double strength, BlockMatrix& a, VectorXd& b) const {
-        const Touch& t = h.touch;
-        const Mat3 held = strength * held_directions(h);
+    void add_hold(const Touch& t, const Hold& hold, BlockMatrix& a, VectorXd& b) const {
+        const Mat3 held = hold.matrix(t.normal);
         Vec3 body = Vec3::Zero(); // the part of the rate that is the body's
         for (int k = 0; k < 4; ++k)
             if (const int i = t.point[k]; i >= n && t.weight[k] != 0)
@@ -145,19 +152,20 @@ struct Step {
     bool let_go(const Points& v, bool last) {
         bool changed = false;
         std::vector<HeldTouch> kept;
-        std::vector<double> kept_hold;
+        std::vector<Hold> kept_hold;
         std::vector<Vec3> force;
         for (std::size_t k = 0; k < cloth.touches.size(); ++k) {
             HeldTouch h = cloth.touches[k];
             Touch now = h.touch;
-            now.force -= hold[k] / dt * held_directions(h) * rate(now, v);
+            now.force -= hold[k].matrix(now.normal) / dt * rate(now, v);
             if (!(now.force.dot(now.normal) > 0)) {
                 changed = true;
                 continue;
             }
-            if (!h.slides && !now.welded && cut_to_cone(now, friction)) {
-                h.slides = changed = true;
-                h.touch.force = now.force;
+            if (!now.welded && cut_to_cone(now, friction) && !h.slides) {
+                h.slides = h.began = changed = true;
+                h.touch.force = now.force; // friction until the next step
+                hold[k].along = 0;
             }
             kept.push_back(h);
             kept_hold.push_back(hold[k]);
@@ -168,10 +176,7 @@ struct Step {
         if (changed && !last) return true;
         for (std::size_t k = 0; k < cloth.touches.size(); ++k) {
             HeldTouch& h = cloth.touches[k];
-            if (h.slides && !h.touch.welded) { // until friction has stopped it
-                const Vec3 was = along_face(h.touch, rate(h.touch, cloth.velocity));
-                h.slides = along_face(h.touch, rate(h.touch, v)).dot(was) > 0 || was.isZero(0);
-            }
+            if (h.slides && !h.began) h.slides = along_face(h.touch, rate(h.touch, v)).norm() > stuck;
             h.touch.force = force[k];
         }
         return false;
@@ -196,13 +201,14 @@ struct Step {
         };
         for (const Touch& now : done.touches) {
             while (old != cloth.touches.end() && before(old->touch, now)) keep_weld();
-            HeldTouch h{now, false};
+            HeldTouch h{now};
             if (old != cloth.touches.end() && !before(now, old->touch)) {
                 h.touch.force += old->touch.force;
                 h.slides = old->slides;
+                h.began = old->began;
                 ++old;
             } else {
-                h.slides = !now.welded && along_face(now, rate(now, v)).norm() > stuck;
+                h.slides = h.began = !now.welded && along_face(now, rate(now, v)).norm() > stuck;
             }
             if (h.touch.force.dot(h.touch.normal) > 0) all.push_back(h);
         }

@@ -24,6 +24,7 @@ struct StepOptions {
 struct HeldTouch {
     Touch touch;
     bool slides = false;
+    bool began = false; ///< to slide, in the last step
 };
 
 /// A cloth on its way, and what contact did to it in the last step. Starts with `x` alone.

@@ -24,13 +24,14 @@ int main(int count, char** words) {
         job.edge_length = parse_length(words[2]);
         job.drape.contact = response;
         if (count > 3) job.drape.max_seconds = std::atof(words[3]);
-        const auto r = nlohmann::json::parse(run_job(job).report);
+        const DrapeOutcome outcome = run_job(job);
+        const auto r = nlohmann::json::parse(outcome.report);
         std::string steps;
         for (const auto& level : r["levels"])
             steps += (steps.empty() ? "" : " / ") + std::to_string(level["iterations"].get<int>());
         std::printf("| %s | %s | %.1f | %s | %s | %.1e | %d | %d | %d |\n", to_string(response),
                     r["contact"]["guarantee"].get<std::string>().c_str(), r["seconds"]["total"].get<double>(),
-                    steps.c_str(), r["status"].get<std::string>().c_str(), r["residual"].get<double>(),
+                    steps.c_str(), r["status"].get<std::string>().c_str(), outcome.result.residual,
                     r["intersections"]["cloth_avatar"].get<int>(), r["intersections"]["cloth_cloth"].get<int>(),
                     r["contact"]["unresolved"].get<int>());
         std::fflush(stdout);

@@ -14,9 +14,9 @@ constexpr double most_motion = 5e-3;    // m in a step
 constexpr double rest_speed = 1e-3;     // m/s
 constexpr double passing_speed = 2e-2;  // m/s, of passes that are not the last
 constexpr double repulsion = 1e3;       // N/m, of springs that act by a tenth of what is missing in a step anyway
-constexpr double penalty_share = 0.02;  // of m / dt2: a stiffer spring, with its dampers, does not bear such steps
-constexpr double damper_share = 0.02;   // of m / dt
-constexpr double depth = 3e-3;          // m: lists of pairs grow long with it
+constexpr double penalty_share = 0.25;  // of m / dt2: a stiffer spring, with its dampers, does not bear such steps
+constexpr double damper_share = 0.05;   // of m / dt
+constexpr double depth = 10e-3;         // m: lists of pairs grow long with it
 constexpr ContactOptions no_contact{{1, 0, 0}, {1, 0, 0}, false};
 
 ResponseOptions response_options(const DrapeRun& run, const ClothProblem& problem) {

@@ -74,6 +74,8 @@ public:
     virtual ResponseDone respond(const ResponseStep& step, Points& v) = 0;
 
     virtual Guarantee guarantee() const = 0;
+    /// Its forces depend on the start of the step alone: a solver may have them before it finds the candidates.
+    virtual bool known_at_start() const { return false; }
     virtual const Points& body() const = 0; ///< where its points are
     virtual const ResponseOptions& options() const = 0;
 };

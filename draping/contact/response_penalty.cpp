@@ -36,6 +36,7 @@ public:
     }
 
     Guarantee guarantee() const override { return Guarantee::none; }
+    bool known_at_start() const override { return true; }
     const Points& body() const override { return contact_.body(); }
     const ResponseOptions& options() const override { return options_; }
 
@@ -88,12 +89,17 @@ private:
         return -n.point[p.p[0] - nodes]; // the point is the first of the pair
     }
 
-    /// Pairs of cloth have no inside: their overlap is what is missing to the thickness. A node has the one nearest
-    /// face of the body, from either side of it; edges and points of the body count within the thickness of them.
+    /// Pairs of cloth have no inside: their overlap is what is missing to the thickness. Of the body, every node has the
+    /// one nearest face, from either side of it, every edge the nearest edge and every triangle the nearest point,
+    /// these within the thickness: a fine body would have springs without number.
     std::vector<Overlap> overlaps(const StepPairs& pairs, const Normals& normals) const {
         const int nodes = contact_.node_count();
+        struct Nearest {
+            Overlap overlap;
+            double distance = 0, upright = 0; ///< the latter: how straight above the face
+        };
         std::vector<Overlap> all;
-        std::map<int, std::pair<Overlap, double>> on_face; // per node, and how straight above the face it is
+        std::map<std::array<int, 3>, Nearest> on_body; // per node, edge or triangle of the cloth
         for (const ActivePair& a : pairs.near()) {
             const ContactPair& p = pairs.pair(a.pair);
             Overlap o{a.pair, a.geometry, p.distance - a.geometry.d};
@@ -105,21 +111,18 @@ private:
             if (a.geometry.d == 0) o.at.normal = out;
             const double upright = a.geometry.normal.dot(out);
             if (upright < 0) o.at.normal = -o.at.normal;
-            const double height = upright < 0 ? -a.geometry.d : a.geometry.d;
-            o.overlap = options_.thickness - height;
-            if (!p.edge_edge && pairs.is_node(p.p[0])) {
-                const auto [at, fresh] = on_face.try_emplace(p.p[0], o, std::abs(upright));
-                if (fresh) continue;
-                auto& [best, straight] = at->second;
-                const double nearest = std::abs(options_.thickness - best.overlap);
-                if (a.geometry.d < nearest || (a.geometry.d == nearest && std::abs(upright) > straight))
-                    at->second = {o, std::abs(upright)};
-            } else if (o.overlap > 0 && a.geometry.d < options_.thickness) {
-                all.push_back(o);
-            }
+            o.overlap = options_.thickness - (upright < 0 ? -a.geometry.d : a.geometry.d);
+            const bool node = !p.edge_edge && p.p[0] < nodes;
+            if (!node && a.geometry.d >= options_.thickness) continue;
+            const std::array<int, 3> simplex = node          ? std::array{p.p[0], -1, -1}
+                                               : p.edge_edge ? std::array{p.p[0], p.p[1], -1}
+                                                             : std::array{p.p[1], p.p[2], p.p[3]};
+            const Nearest now{o, a.geometry.d, std::abs(upright)};
+            Nearest& best = on_body.try_emplace(simplex, now).first->second;
+            if (now.distance < best.distance || (now.distance == best.distance && now.upright > best.upright)) best = now;
         }
-        for (const auto& [node, found] : on_face)
-            if (found.first.overlap > 0) all.push_back(found.first);
+        for (const auto& [simplex, nearest] : on_body)
+            if (nearest.overlap.overlap > 0) all.push_back(nearest.overlap);
         return all;
     }
 

@@ -216,6 +216,7 @@ struct Step {
         cloth.touches = std::move(all);
         const Points last = std::move(cloth.other_force);
         cloth.other_force = done.other_force;
+        if (response.known_at_start()) return;
         for (int i = 0; i < n; ++i) { // impacts of a single step are no lasting force
             Vec3& f = cloth.other_force[i];
             const double most = std::max(2 * last[i].norm(), 9.81 * mass(i));
@@ -240,16 +241,25 @@ ResponseDone step(Problem& problem, Response& response, Moving& cloth, const Poi
     cloth.velocity.resize(n, Vec3::Zero());
     cloth.other_force.resize(n, Vec3::Zero());
     Step one{problem, response, cloth, body_end, factor, options};
-    Points v = one.candidate();
     std::vector<double> inverse_mass(n, 0.0);
-    for (std::size_t i = 0; i < n; ++i) {
-        if (problem.pinned()[i]) continue;
-        inverse_mass[i] = 1 / one.mass(int(i));
-        v[i] -= options.time_step * inverse_mass[i] * cloth.other_force[i]; // which the response is to do anew
+    for (std::size_t i = 0; i < n; ++i)
+        if (!problem.pinned()[i]) inverse_mass[i] = 1 / one.mass(int(i));
+    const ResponseStep seen{options.time_step, cloth.x, cloth.velocity, inverse_mass, body_end};
+    ResponseDone done;
+    Points v = cloth.velocity;
+    if (response.known_at_start()) {
+        done = response.respond(seen, v);
+        one.take_up(done, v);
+        v = one.candidate();
+        one.slow(v);
+    } else {
+        v = one.candidate();
+        for (std::size_t i = 0; i < n; ++i) // what the response is to do anew
+            v[i] -= options.time_step * inverse_mass[i] * cloth.other_force[i];
+        one.slow(v);
+        done = response.respond(seen, v);
+        one.take_up(done, v);
     }
-    one.slow(v);
-    ResponseDone done = response.respond({options.time_step, cloth.x, cloth.velocity, inverse_mass, body_end}, v);
-    one.take_up(done, v);
     for (std::size_t i = 0; i < n; ++i) cloth.x[i] += options.time_step * v[i];
     cloth.velocity = std::move(v);
     return done;

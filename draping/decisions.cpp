@@ -14,18 +14,35 @@ namespace toile {
 namespace {
 
 std::string contact_sentence(const DrapeFacts& f) {
+    if (f.contact.response == ContactResponse::constraint)
+        return text("contact of the cloth with itself, and of edges with the body, was left out by the response that was "
+                    "asked for: at the end %d pairs of cloth are within %.3g mm of each other",
+                    f.touch.cloth_pairs, 1e3 * f.clearance);
     return text("contact of the cloth with itself was modelled: at the end %d pairs are within %.3g mm of "
                 "each other",
                 f.touch.cloth_pairs, 1e3 * f.clearance);
 }
 
+bool has_cloth_friction(ContactResponse r) { return r == ContactResponse::penalty || r == ContactResponse::impulse; }
+
 std::string friction_sentence(const DrapeFacts& f, int nodes) {
+    if (f.contact.response == ContactResponse::rigid)
+        return text("cloth was welded to what it touches, whatever friction would bear (%d of %d nodes are held, with "
+                    "%.3g N in all)",
+                    f.touch.touching_nodes, nodes, f.touch.press);
     if (f.friction <= 0)
         return text("friction was left out: its coefficient is 0 (%d of %d nodes touch the body)",
                     f.touch.touching_nodes, nodes);
     return text("Coulomb friction with coefficient %.3g was modelled between cloth and body, which touch at %d "
-                "of %d nodes with %.3g N in all; friction of cloth on cloth was left out (%d pairs touch)",
-                f.friction, f.touch.touching_nodes, nodes, f.touch.press, f.touch.cloth_pairs);
+                "of %d nodes with %.3g N in all; friction of cloth on cloth was %s (%d pairs touch)",
+                f.friction, f.touch.touching_nodes, nodes, f.touch.press,
+                has_cloth_friction(f.contact.response) ? "modelled with the same" : "left out", f.touch.cloth_pairs);
+}
+
+std::string response_sentence(const DrapeFacts& f) {
+    return text("contact was answered by the response \"%s\" while the levels came to rest in damped motion; its guarantee "
+                "at the end is \"%s\", steps that left impacts unresolved: %d",
+                to_string(f.contact.response), to_string(f.contact.guarantee), f.contact.unresolved);
 }
 
 std::string level_sentence(const DrapeFacts& f) {
@@ -124,6 +141,7 @@ std::vector<std::string> decisions(const DrapeFacts& f, const Garment& g, const 
                                    const PanelFabrics& fabrics, const TriMesh& body) {
     std::vector<std::string> out{level_sentence(f), contact_sentence(f), friction_sentence(f, g.node_count),
                                  growth_sentence(f)};
+    if (f.contact.response != ContactResponse::barrier) out.push_back(response_sentence(f));
     if (f.untangled > 0)
         out.push_back(text("where cloth crossed itself after sewing or on a finer mesh, it was taken apart before contact "
                            "took over: at most %d crossings on a level", f.untangled));

@@ -4,6 +4,7 @@
 // What a drape modelled and left out, in sentences with the measure that justified each.
 
 #include "draping/contact/contact.h"
+#include "draping/drape.h"
 #include "draping/measure.h"
 
 #include <string>
@@ -32,6 +33,7 @@ TouchFacts count_touching(const Contact& contact, const Points& x);
 
 struct DrapeFacts {
     TouchFacts touch;
+    ContactReport contact;
     double friction = 0;
     double clearance = 0;            ///< m
     std::vector<HookFacts> hooks;

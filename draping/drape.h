@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "draping/contact/response_kind.h"
 #include "draping/landmarks.h"
 #include "draping/measure.h"
 #include "draping/staging.h"
@@ -28,7 +29,9 @@ struct DrapeOptions {
     double clearance = 0.5e-3;      ///< m, distance from the body below which contact acts
     double friction = -1;           ///< Coulomb coefficient on the body; negative: the fabric's
     double gravity = 9.81;          ///< m/s2, along -y
-    int max_iterations = 5000;      ///< Newton iterations on all levels together
+    /// What levels come to rest with. Placing and sewing always have the barrier, so that they start without crossings.
+    ContactResponse contact = ContactResponse::barrier;
+    int max_iterations = 5000;      ///< Newton iterations, or steps of a motion, on all levels together
     double max_seconds = 1e9;       ///< wall time after which the state reached is returned with status limit
     double max_memory = 1e18;       ///< bytes of the process; the same happens when they or the next level come near
     std::vector<std::string> hold;  ///< edges whose hooks stay on to the end: words of labels_called()
@@ -40,7 +43,7 @@ struct DrapeOptions {
 struct LevelReport {
     double edge_length = 0;
     int vertices = 0;
-    int iterations = 0;      ///< Newton iterations
+    int iterations = 0;      ///< Newton iterations, or steps of a motion
     int factorisations = 0;
     double seconds = 0;
 };
@@ -56,6 +59,13 @@ struct BarrierReport {
     double cloth_stiffness = 0; ///< Pa/m, the same between cloth and cloth
 };
 
+/// What met what, and what was promised of it.
+struct ContactReport {
+    ContactResponse response = ContactResponse::barrier;
+    Guarantee guarantee = Guarantee::none; ///< that held to the end: none when the start of a level crossed something,
+    int unresolved = 0;                    ///< or a step left impacts unresolved, which so many did
+};
+
 /// A drape and by how much it met each promise.
 struct DrapeResult {
     Garment garment;   ///< finest level, seams closed
@@ -68,6 +78,7 @@ struct DrapeResult {
     double tolerance = 0;
     double friction = 0;
     BarrierReport barrier;
+    ContactReport contact;
     std::vector<LevelReport> levels;
     std::vector<StageSeconds> seconds;
     std::vector<Landmark> landmarks; ///< of every labelled edge, by label

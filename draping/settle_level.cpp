@@ -2,6 +2,7 @@
 #include "draping/settle_level.h"
 
 #include "draping/hooks.h"
+#include "draping/respond.h"
 #include "draping/take_apart.h"
 #include "draping/where.h"
 #include "geometry/text.h"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace toile {
 
@@ -28,6 +30,8 @@ constexpr int most_iterations = 3000;          // of the last pass of a level
 constexpr int tight_every = 100;               // iterations after which cloth is looked at that may be too small
 constexpr double too_tight = 0.01;             // m, missing round the garment, of which
 constexpr double tight_gain = 0.1;             // this share has to have gone since, for it to go on
+constexpr int steps_per_iteration = 3;         // a motion takes more steps than Newton's method
+constexpr double coarse_motion_residual = 0.3; // less than the 1 of free fall
 
 /// What acts on a closed garment at every level beside cloth, contact and weight: pins, bands, hooks that
 /// stay and stitches that cannot become shared nodes.
@@ -57,10 +61,10 @@ void note_release(DrapeRun& run) {
 
 /// Says where a drape that has not converged is held up: too little cloth, what blocks the step, or the worst
 /// force.
-void note_where(DrapeRun& run, const ClothProblem& problem, const SettleResult& r) {
+void note_where(DrapeRun& run, const ClothProblem& problem, SettleEnd end, int worst_node) {
     std::string& where = run.result.where;
-    where = text("residual %.3g on ", r.residual) + place_of_node(run.garment, run.x, problem.worst_node());
-    if (r.end == SettleEnd::stalled && problem.blocking_pair() >= 0)
+    where = text("residual %.3g on ", run.result.residual) + place_of_node(run.garment, run.x, worst_node);
+    if (end == SettleEnd::stalled && problem.blocking_pair() >= 0)
         where += "; no step is possible, " +
                  place_of_pair(run.garment, run.x, problem.contact().pair(problem.blocking_pair())) + " is in the way";
     const Tightness t = find_tightness(run.garment, run.x, run.fabrics);
@@ -77,9 +81,10 @@ void note_where(DrapeRun& run, const ClothProblem& problem, const SettleResult& 
                                            : "; " + where);
 }
 
-void note_facts(DrapeRun& run, const ClothProblem& problem) {
+void note_facts(DrapeRun& run, const ClothProblem& problem, const TouchFacts& touch) {
     DrapeFacts& f = run.facts;
-    f.touch = count_touching(problem.contact(), run.x);
+    f.touch = touch;
+    f.contact = run.result.contact;
     f.friction = run.result.friction;
     f.clearance = run.options.clearance;
     f.pins = int(pinned_places(run.staging, run.level, run.garment).size());
@@ -158,6 +163,16 @@ void settle_level(DrapeRun& run) {
     };
     untangle();
 
+    // From this start on a response may take over: the same cloth, in motion.
+    std::optional<LevelInMotion> motion;
+    if (run.options.contact != ContactResponse::barrier) {
+        motion.emplace(run);
+        motion->problem.gravity = problem.gravity;
+        add_fixtures(run, motion->problem);
+        motion->problem.hooks = problem.hooks;
+    }
+    ClothProblem& acting = motion ? motion->problem : problem;
+
     struct Pass {
         double softness;
         int iterations;
@@ -169,26 +184,33 @@ void settle_level(DrapeRun& run) {
     if (first)
         passes = {{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, run.last_level() ? most_iterations : 150, false}};
     if (run.facts.restarted) passes = {{1, most_iterations, false}};
-    if (problem.hooks.size() > kept.size()) {
+    if (acting.hooks.size() > kept.size()) {
         passes.insert(passes.end() - 1, {1, 100, true});
         problem.friction.coefficient = 0;
     }
     SettleResult r;
     TightWatch tight{run};
+    RestResult rest;
     for (const Pass& pass : passes) {
         if (run.stopped) break;
         const bool last_pass = &pass == &passes.back();
-        soften(run, problem, pass.softness);
-        if (!pass.hooked && problem.hooks.size() > kept.size()) {
+        soften(run, acting, pass.softness);
+        if (!pass.hooked && acting.hooks.size() > kept.size()) {
             note_release(run);
-            problem.hooks = kept;
+            acting.hooks = kept;
             problem.rest_here(run.x, run.result.friction);
         }
         SettleOptions o;
         o.tolerance = run.last_level() && last_pass ? run.options.tolerance : coarse_residual;
         o.max_iterations = pass.iterations;
         o.exact_below = last_pass ? 20 : 0;
-        if (pass.softness == 1 || !first) problem.limit_strain(last_pass && run.last_level() ? hard_limit : soft_limit);
+        if (pass.softness == 1 || !first) acting.limit_strain(last_pass && run.last_level() ? hard_limit : soft_limit);
+        if (motion) {
+            const bool last = last_pass && run.last_level();
+            rest = motion->rest(run, last ? run.options.tolerance : coarse_motion_residual,
+                                steps_per_iteration * pass.iterations, last);
+            continue;
+        }
         // What did not come apart may do so when the cloth has moved.
         for (int k = 0; tangled && k < most_untangles && !run.stopped; ++k) {
             SettleOptions some = o;
@@ -200,20 +222,33 @@ void settle_level(DrapeRun& run) {
         r = run.settle_some(problem, run.x, factor, o);
         if (last_pass && run.last_level()) r = settle_within_limits(run, problem, factor, o, r);
     }
-    run.result.residual = r.residual;
+    if (!motion) run.result.residual = r.residual;
+    ContactReport& report = run.result.contact;
+    report.response = run.options.contact;
+    if (run.level == 0 || run.facts.restarted)
+        report.guarantee = motion ? motion->response->guarantee() : Guarantee::no_crossing;
+    if (tangled || !run.grown || report.unresolved > 0) report.guarantee = Guarantee::none;
     run.result.barrier = {contact.body.distance, contact.body.stiffness, contact.cloth.stiffness};
     if (run.last_level()) {
-        const int beyond = int(problem.beyond_limits(run.x).size());
-        note_facts(run, problem);
-        if (run.stopped || (run.iterations_left <= 0 && beyond == 0))
+        const int beyond = int(acting.beyond_limits(run.x).size());
+        if (motion) problem.touch(run.x);
+        note_facts(run, acting, motion ? motion->touch_facts(problem.contact()) : count_touching(problem.contact(), run.x));
+        const bool at_rest = motion ? rest.rested : r.end == SettleEnd::settled;
+        if (run.stopped || (motion && !at_rest) || (run.iterations_left <= 0 && beyond == 0))
             run.result.status = DrapeStatus::limit;
         else if (!run.grown)
             run.result.status = DrapeStatus::too_small;
-        else if (r.end == SettleEnd::settled && beyond == 0)
+        else if (at_rest && beyond == 0)
             run.result.status = DrapeStatus::converged;
         else
             run.result.status = DrapeStatus::stalled;
-        if (run.result.status != DrapeStatus::converged) note_where(run, problem, r);
+        if (run.result.status != DrapeStatus::converged) {
+            if (motion) residual(acting, motion->cloth); // tells which node is worst
+            note_where(run, problem, r.end, acting.worst_node());
+            if (motion && !at_rest)
+                run.result.where += text("; not at rest after %d steps, at %.2g m/s", run.result.levels.back().iterations,
+                                         rest.speed);
+        }
         if (beyond > 0)
             run.result.warnings.push_back(
                 text("%d triangles are stretched beyond their fabric's limit", beyond));

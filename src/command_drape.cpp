@@ -127,6 +127,12 @@ void add_drape(CLI::App& app, Command& chosen) {
     add_length(command, "clearance", job.drape.clearance, 5e-5, 0.01,
                "Distance from the body below which contact acts");
     command
+        .add_option_function<std::string>(
+            "--contact", [&job](const std::string& name) { job.drape.contact = contact_response(name); },
+            "What answers contact while the cloth comes to rest, by docs/responses.md (default barrier)")
+        ->check(CLI::IsMember({"barrier", "constraint", "penalty", "impulse", "rigid"}).description(""))
+        ->type_name("barrier|constraint|penalty|impulse|rigid");
+    command
         .add_option("--hold", job.drape.hold,
                     "Labelled edges held at their height to the end: a label of the file, or waist, collar, "
                     "armhole, \"strapless top\"; may be repeated")

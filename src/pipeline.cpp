@@ -70,6 +70,7 @@ std::string input_hash(const DrapeJob& job) {
     hash.add(job.fabric);
     for (const std::string& word : job.drape.hold)
         hash.add("hold " + word + '\n');
+    hash.add(std::string("contact ") + to_string(job.drape.contact) + '\n');
     for (const double value :
          {job.form.height, job.form.bust, job.form.waist, job.form.hip, job.edge_length, job.drape.tolerance,
           job.drape.clearance, job.drape.friction, job.drape.gravity})

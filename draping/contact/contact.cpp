@@ -441,13 +441,27 @@ void Contact::couplings(const std::vector<ActivePair>& active, std::vector<std::
         if (p.built < 2 * p.distance) couple(p);
 }
 
-double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx, int* blocking,
-                              std::vector<double>* shares) const {
-    const std::vector<double> distance = moved_since_built(x);
+std::vector<double> Contact::lengths(const Eigen::VectorXd& dx, const Points* body_dx) const {
     std::vector<double> step(nodes_ + body_.size(), 0.0);
     for (int i = 0; i < nodes_; ++i) step[i] = dx.segment<3>(3 * i).norm();
     if (body_dx)
         for (std::size_t v = 0; v < body_.size(); ++v) step[nodes_ + v] = (*body_dx)[v].norm();
+    return step;
+}
+
+std::vector<int> Contact::within_reach(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx) const {
+    const std::vector<double> distance = moved_since_built(x), step = lengths(dx, body_dx);
+    std::vector<int> found;
+    for (int i = 0; i < int(pairs_.size()); ++i) {
+        const ContactPair& p = pairs_[i];
+        if (p.built - moved(distance, p) - moved(step, p) < p.distance) found.push_back(i);
+    }
+    return found;
+}
+
+double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx, int* blocking,
+                              std::vector<double>* shares) const {
+    const std::vector<double> distance = moved_since_built(x), step = lengths(dx, body_dx);
     const auto motion_of = [&](int i) -> Vec3 {
         if (i < nodes_) return dx.segment<3>(3 * i);
         return body_dx ? (*body_dx)[i - nodes_] : Vec3::Zero();

@@ -87,6 +87,10 @@ public:
     double feasible_step(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx = nullptr,
                          int* blocking = nullptr, std::vector<double>* shares = nullptr) const;
 
+    /// Pairs of the list, rising, that may come nearer than their distance between x and x + t dx (and body +
+    /// t body_dx): those whose longest motions cannot bring them there are left out.
+    std::vector<int> within_reach(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx = nullptr) const;
+
     /// Force of the body's barrier on every node, N.
     Points body_forces(const std::vector<ActivePair>& active) const;
 
@@ -102,14 +106,16 @@ public:
     int widen(Points& x);
 
     const ContactPair& pair(int i) const { return pairs_[i]; }
+    /// The four points of a pair, those of the body where it is now.
+    std::array<Vec3, 4> corners(const Points& x, const ContactPair& p) const;
     int node_count() const { return nodes_; }
 
 private:
     Vec3 at(const Points& x, int i) const { return i < nodes_ ? x[i] : body_[i - nodes_]; }
-    std::array<Vec3, 4> corners(const Points& x, const ContactPair& p) const;
     Barrier barrier(const ContactPair& p) const;
     void find_pairs(const std::vector<char>& moved);
     double moved(const std::vector<double>& distance, const ContactPair& p) const;
+    std::vector<double> lengths(const Eigen::VectorXd& dx, const Points* body_dx) const;
     std::vector<double> moved_since_built(const Points& x) const;
     bool body_serves(const Points* body_dx) const;
     double slack_for(double step) const;

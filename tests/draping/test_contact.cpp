@@ -7,6 +7,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -134,6 +136,33 @@ TEST_CASE("contact: a list that is kept up finds the pairs of a new one") {
         CHECK(expected.size() > 100);
         CHECK(touching(kept, x) == expected);
     }
+}
+
+TEST_CASE("contact: pairs that may come within reach are all that do") {
+    Random random(5);
+    const ContactCloth cloth = two_sheets();
+    ContactOptions o;
+    o.body = o.cloth = {2e-3, 0, 0};
+    int found = 0;
+    for (int round = 0; round < 200; ++round) {
+        Points x;
+        for (int i = 0; i < 6; ++i) x.push_back(Vec3(0.02 * (i % 3 == 1), 0.01, 0.02 * (i % 3 == 2)) + random.vec3(0.01));
+        Eigen::VectorXd dx(18);
+        for (int i = 0; i < 6; ++i) dx.segment<3>(3 * i) = random.vec3(0.01);
+        Contact contact(cloth, tetrahedron(), o);
+        contact.prepare(x, dx);
+        const std::vector<int> reach = contact.within_reach(x, dx);
+        CHECK(std::is_sorted(reach.begin(), reach.end()));
+        for (const double t : {0.0, 0.3, 0.7, 1.0}) {
+            Points at = x;
+            flat(at) += t * dx;
+            for (const ActivePair& a : contact.active(at)) {
+                CHECK(std::binary_search(reach.begin(), reach.end(), a.pair));
+                ++found;
+            }
+        }
+    }
+    CHECK(found > 100);
 }
 
 TEST_CASE("friction: limit and stick") {

@@ -115,3 +115,31 @@ TEST_CASE("a drape that is stopped writes the state reached and says so") {
     CHECK_THAT(report["where"].get<std::string>(), Contains("stopped"));
     CHECK(read_garment(folder / "a.obj").x.size() == report["nodes"].get<std::size_t>());
 }
+
+TEST_CASE("every response to contact drapes, and the report says what it promised") {
+    const struct {
+        const char* name;
+        const char* guarantee;
+        bool clean;
+    } responses[] = {{"constraint", "no_node_in_body", false},
+                     {"penalty", "none", false},
+                     {"impulse", "no_crossing", true},
+                     {"rigid", "no_crossing", true}};
+    for (const auto& response : responses) {
+        INFO(response.name);
+        const Run r = run_toile({"drape", tee, "--edge-length", "60mm", "--contact", response.name, "--max-seconds",
+                                 "20s", "--json"});
+        const nlohmann::json report = nlohmann::json::parse(r.out);
+        INFO(report["where"].get<std::string>());
+        CHECK(Schema("report.schema.json").complaints(r.out) == "");
+        CHECK(report["contact"]["response"] == response.name);
+        CHECK(report["contact"]["guarantee"] == response.guarantee);
+        CHECK(report["seam_gap_max"] == 0.0);
+        const int crossings = report["intersections"]["cloth_avatar"].get<int>() +
+                              report["intersections"]["cloth_cloth"].get<int>();
+        if (response.clean) CHECK(crossings == 0);
+        if (crossings > 0) CHECK(report["status"] != "converged");
+        CHECK(r.code == (report["status"] == "converged" ? 0 : 3));
+    }
+    CHECK(run_toile({"drape", tee, "--contact", "rubber", "--json"}).code == 1);
+}

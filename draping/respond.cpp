@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/respond.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace toile {
+
+namespace {
+
+constexpr double time_step = 2e-3;      // s
+constexpr double damping = 10;          // 1/s: falls at 1 m/s, swings die away in half a second
+constexpr double most_motion = 5e-3;    // m in a step
+constexpr double rest_speed = 1e-3;     // m/s
+constexpr double passing_speed = 2e-2;  // m/s, of passes that are not the last
+constexpr double repulsion = 1e3;       // N/m, of springs that act by a tenth of what is missing in a step anyway
+constexpr double penalty_share = 0.25;  // of m / dt2: a stiffer spring, with its dampers, does not bear such steps
+constexpr double damper_share = 0.05;   // of m / dt
+constexpr double depth = 10e-3;         // m: lists of pairs grow long with it
+constexpr ContactOptions no_contact{{1, 0, 0}, {1, 0, 0}, false};
+
+ResponseOptions response_options(const DrapeRun& run, const ClothProblem& problem) {
+    ResponseOptions o;
+    o.thickness = run.contact_options().body.distance;
+    o.body_friction = o.cloth_friction = run.result.friction;
+    o.stiffness = repulsion;
+    if (run.options.contact != ContactResponse::penalty) return o;
+    double mass = 0;
+    for (const double m : problem.node_mass()) mass += m / problem.points();
+    o.stiffness = penalty_share * mass / (time_step * time_step);
+    o.depth = depth;
+    o.normal_damping = o.tangential_damping = damper_share * mass / time_step;
+    return o;
+}
+
+} // namespace
+
+LevelInMotion::LevelInMotion(const DrapeRun& run)
+    : problem(run.garment, run.level_fabrics(), {}, no_contact),
+      response(make_response(run.options.contact, contact_cloth(run.garment), run.body, response_options(run, problem))) {
+    cloth.x = run.x;
+    step.time_step = time_step;
+    step.damping = damping;
+    step.max_motion = std::min(most_motion, run.edge_length());
+}
+
+RestResult LevelInMotion::rest(DrapeRun& run, double tolerance, int max_steps, bool last) {
+    RestOptions o;
+    o.step = step;
+    o.tolerance = tolerance;
+    o.speed = last ? rest_speed : passing_speed;
+    o.max_steps = std::min(max_steps, run.iterations_left);
+    const double from = run.share_begin, span = run.share_end - run.share_begin;
+    o.progress = [&, base = run.done](int i, double r) {
+        const double within = (base - from) / std::max(span, 1e-9);
+        return run.tell(within + (1 - within) * (1 - std::exp(-i / 500.0)), r);
+    };
+    const RestResult r = come_to_rest(problem, *response, cloth, factor, o);
+    run.x = cloth.x;
+    run.result.residual = r.residual;
+    run.iterations_left -= r.steps;
+    run.result.levels.back().iterations += r.steps;
+    run.result.levels.back().factorisations += r.factorisations;
+    run.result.contact.unresolved += r.unresolved;
+    return r;
+}
+
+TouchFacts LevelInMotion::touch_facts(const Contact& near) const {
+    TouchFacts facts;
+    for (const ActivePair& a : near.active(cloth.x)) ++(near.pair(a.pair).with_body ? facts.body_pairs : facts.cloth_pairs);
+    for (const Vec3& force : cloth.contact_force()) {
+        facts.touching_nodes += force.squaredNorm() > 0;
+        facts.press += force.norm();
+    }
+    return facts;
+}
+
+} // namespace toile

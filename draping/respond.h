@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// A level brought to rest by a response instead of the barrier: damped motion. Internal to the stages of a drape.
+
+#include "draping/drape_run.h"
+#include "draping/solve/step.h"
+
+namespace toile {
+
+/// The level at work in motion: its cloth without contact, and the response to what it meets. The start, `run.x`,
+/// should cross nothing.
+struct LevelInMotion {
+    ClothProblem problem;
+    std::unique_ptr<Response> response;
+    Moving cloth;
+    Cholesky factor;
+    StepOptions step;
+
+    explicit LevelInMotion(const DrapeRun& run);
+
+    /// Steps until the cloth is at rest, to `tolerance` on the residual, or `max_steps` are over; `run.x` is then where
+    /// it is. A last pass is to be at rest to 1 mm/s, others to 20.
+    RestResult rest(DrapeRun& run, double tolerance, int max_steps, bool last);
+
+    /// What touches now, from the pairs that `near` has.
+    TouchFacts touch_facts(const Contact& near) const;
+};
+
+} // namespace toile

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// A square sheet of cotton that moves under gravity and meets a body.
+
+#include "draping/cloth.h"
+#include "draping/solve/step.h"
+#include "tests/support/flat_mesh.h"
+
+namespace toile::test {
+
+inline Fabric cotton() {
+    Fabric f;
+    f.name = "cotton";
+    f.density = 0.15;
+    f.stretch_warp = f.stretch_weft = 1000;
+    f.shear = 50;
+    f.bend_warp = f.bend_weft = 1e-5;
+    f.bend_twist = 0.5e-5;
+    return f;
+}
+
+/// Cloth without contact of its own, and a response.
+struct DroppedSheet {
+    Garment garment;
+    Moving cloth;
+    ClothProblem problem;
+    std::unique_ptr<Response> response;
+    Cholesky factor;
+    StepOptions options;
+
+    /// Horizontal, its middle at `middle`.
+    DroppedSheet(double side, double edge, const Vec3& middle, const TriMesh& body, ContactResponse kind,
+                 const ResponseOptions& how = {})
+        : DroppedSheet(jittered_rectangle(side, side, edge, 0.25, 7), side, middle, body, kind, how) {}
+
+    ResponseDone step_on(const Points& body_end) {
+        return step(problem, *response, cloth, body_end, factor, options);
+    }
+    ResponseDone step_on() { return step_on(Points(response->body())); }
+
+    IntersectionCount crossings(const std::vector<Triangle>& body_triangles) const {
+        return count_intersections(node_triangles(garment), cloth.x, {response->body(), body_triangles});
+    }
+
+private:
+    DroppedSheet(const FlatMesh& mesh, double side, const Vec3& middle, const TriMesh& body, ContactResponse kind,
+                 const ResponseOptions& how)
+        : garment(garment_of(mesh)), problem(garment, {cotton()}, {}, {{1, 0, 0}, {1, 0, 0}, false}),
+          response(make_response(kind, contact_cloth(garment), body, how)) {
+        for (const Vec2& p : mesh.points) cloth.x.push_back(middle + Vec3(p.x() - side / 2, 0, side / 2 - p.y()));
+        problem.gravity = 9.81;
+    }
+};
+
+} // namespace toile::test

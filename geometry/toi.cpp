@@ -38,16 +38,23 @@ double largest_of(const Motion& m) {
     return largest + finite;
 }
 
+// Longest of the vectors of a motion.
+double longest_of(const Motion& m) {
+    double squared = 0;
+    for (int k = 0; k < 4; ++k)
+        squared = std::max({squared, m.x[k].squaredNorm(), m.dx[k].squaredNorm()});
+    return std::sqrt(squared);
+}
+
 // By how much rounding can make a distance appear larger than it is; u = epsilon / 2 is the relative error of
-// an operation, L the largest coordinate, l that of the differences worked with. Outside of here: dx may come
-// from two rounded ends, and x + t dx is written down, 4 u L per coordinate, so sqrt(3) times that per point
-// and 14 u L between two. In here: positions at t are wrong by 5 u l per coordinate (differences of places
-// and of motions, product, sum), so two points by 17.4 u l; projections on a unit vector by 3 u times the
-// length, which is below 2 sqrt(3) l for places and sqrt(3) l for motions, so differences of two by 20.8
-// and 10.4 u l; the length of that vector, subtractions, the division and the sum of times add less than 31 u
-// l.
-double rounding_of(double largest, double largest_difference) {
-    return std::numeric_limits<double>::epsilon() * (8 * largest + 40 * largest_difference);
+// an operation, L the largest coordinate, l the longest of the differences worked with. Outside of here: dx
+// may come from two rounded ends, and x + t dx is written down, 4 u L per coordinate, so sqrt(3) times that
+// per point and 14 u L between two. In here: positions at t are wrong by 5 u l (differences of places and of
+// motions, product, sum), two points by 10 u l; their projections on a unit vector by 3 u of their length, 12
+// u l for both places, which are below 2 l, and 6 u l for motions; the length of that vector, subtractions,
+// the division and the sum of times add 24 u l.
+double rounding_of(double largest, double longest_difference) {
+    return std::numeric_limits<double>::epsilon() * (7 * largest + 26 * longest_difference);
 }
 
 // Time from now at which the projections of the two simplices on `n` come within `target`: until then they
@@ -74,7 +81,7 @@ template <class Kind> double time_of_impact(const Motion& m, const ToiOptions& o
     // Relative to one corner in place and motion: differences of near points are exact or nearly so.
     const Motion local = {{Vec3::Zero(), m.x[1] - m.x[0], m.x[2] - m.x[0], m.x[3] - m.x[0]},
                           {Vec3::Zero(), m.dx[1] - m.dx[0], m.dx[2] - m.dx[0], m.dx[3] - m.dx[0]}};
-    const double rounding = rounding_of(largest_of(m), largest_of(local));
+    const double rounding = rounding_of(largest_of(m), longest_of(local));
     Vec3 gap = Kind::gap(local.x);
     double distance = gap.norm();
     const double room = distance - rounding - options.min_distance;

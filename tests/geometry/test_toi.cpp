@@ -239,7 +239,7 @@ bool comes_within(Kind kind, const Motion& m, double limit) {
     for (int i = 0; i <= 1000; ++i)
         if (distance_at(kind, m, i / 1000.) < distance_at(kind, m, best)) best = i / 1000.;
     double low = std::max(0.0, best - 1e-3), high = std::min(1.0, best + 1e-3);
-    for (int k = 0; k < 100; ++k) { // golden section, as good as
+    for (int k = 0; k < 100; ++k) { // golden section
         const double a = low + 0.382 * (high - low), b = low + 0.618 * (high - low);
         if (distance_at(kind, m, a) < distance_at(kind, m, b))
             high = b;
@@ -267,9 +267,7 @@ TEST_CASE("no query of the public collection with a collision is passed, and non
         missed_within[k] += q.touch && !near;
         stopped[k] += !q.touch && touch;
         stopped_within[k] += !q.touch && near;
-        // No more than what is kept of the start distance beyond the 1e-6: keep is 1e-9, and motions are
-        // below 100.
-        apart[k] += near && !comes_within(q.kind, m, 1.2e-6);
+        apart[k] += near && !comes_within(q.kind, m, 1e-6);
         wrong_truth += test::exactly_touch(q.kind, q.from, q.to) != q.touch;
     }
     CHECK(queries == std::array{3085, 4194});

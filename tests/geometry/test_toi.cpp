@@ -1,25 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/distance.h"
 #include "geometry/toi.h"
-#include "tests/support/random.h"
+#include "tests/support/ccd_queries.h"
 #include "tests/support/test_data.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <limits>
-#include <sstream>
 
 using namespace toile;
 
 namespace {
 
 using Four = std::array<Vec3, 4>;
-enum class Kind { point_triangle, edge_edge };
+using Kind = test::PairKind;
 
 double toi(Kind kind, const Motion& m, const ToiOptions& options) {
     return kind == Kind::point_triangle ? time_of_impact_point_triangle(m, options)
@@ -34,9 +31,7 @@ double distance_at(Kind kind, const Motion& m, double t) {
                                                   : nearest_edge_edge(x[0], x[1], x[2], x[3]).squared);
 }
 
-Motion between(const Four& x0, const Four& x1) {
-    return {x0, {x1[0] - x0[0], x1[1] - x0[1], x1[2] - x0[2], x1[3] - x0[3]}};
-}
+const auto between = test::motion_between;
 
 /// An exact time of impact, by hand. t < 0: none.
 struct Known {
@@ -227,62 +222,105 @@ TEST_CASE("time of impact of the reference queries with exact times") {
             }
         const bool hit = q["hit"];
         const Kind kind = q["kind"] == "vertex-face" ? Kind::point_triangle : Kind::edge_edge;
-        check_against_exact(q["name"], kind, between(x0, x1), hit, hit ? q["toi"].get<double>() : -1.0);
+        const Motion m = between(x0, x1);
+        check_against_exact(q["name"], kind, m, hit, hit ? q["toi"].get<double>() : -1.0);
+        CHECK(test::exactly_touch(kind, x0, x1) == hit);
+        if (hit) CHECK(test::toi_touch(kind, m, 0));
+        if (hit) CHECK(test::toi_touch(kind, m, 1e-6));
     }
 }
 
 namespace {
 
-struct Count {
-    int queries = 0, hits = 0, missed = 0, false_alarms = 0;
-};
-
-// Eight rows of x_num,x_den,y_num,y_den,z_num,z_den,truth to a query.
-void count_queries(const std::filesystem::path& path, Kind kind, Count& count) {
-    std::ifstream file(path);
-    std::string line;
-    Four x[2];
-    for (int row = 0; std::getline(file, line); ++row) {
-        std::replace(line.begin(), line.end(), ',', ' ');
-        std::istringstream in(line);
-        for (int c = 0; c < 3; ++c) {
-            double num, den;
-            in >> num >> den;
-            x[row % 8 / 4][row % 4][c] = num / den;
-        }
-        bool truth;
-        in >> truth;
-        REQUIRE(in);
-        if (row % 8 != 7) continue;
-        const bool found = toi(kind, between(x[0], x[1]), {1e-9}) < 1;
-        ++count.queries;
-        count.hits += truth;
-        count.missed += truth && !found;
-        count.false_alarms += found && !truth;
+/// Whether some time of the motion brings the pair within `limit`; may fail to find it, but what it finds is
+/// there.
+bool comes_within(Kind kind, const Motion& m, double limit) {
+    double best = 0;
+    for (int i = 0; i <= 1000; ++i)
+        if (distance_at(kind, m, i / 1000.) < distance_at(kind, m, best)) best = i / 1000.;
+    double low = std::max(0.0, best - 1e-3), high = std::min(1.0, best + 1e-3);
+    for (int k = 0; k < 100; ++k) { // golden section
+        const double a = low + 0.382 * (high - low), b = low + 0.618 * (high - low);
+        if (distance_at(kind, m, a) < distance_at(kind, m, b))
+            high = b;
+        else
+            low = a;
     }
+    return std::min(distance_at(kind, m, best), distance_at(kind, m, low)) <= limit;
 }
 
 } // namespace
 
-TEST_CASE("no query of the public collection with a collision is passed") {
+TEST_CASE("no query of the public collection with a collision is passed, and none beyond the tolerance is "
+          "stopped") {
     const auto folder = test::reference_data("ccd");
     if (!folder) return;
-    std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(*folder))
-        if (entry.path().extension() == ".csv") files.push_back(entry.path());
-    std::sort(files.begin(), files.end());
-    Count edges, faces;
-    for (const auto& path : files) {
-        const bool ee = path.parent_path().filename() == "edge-edge";
-        count_queries(path, ee ? Kind::edge_edge : Kind::point_triangle, ee ? edges : faces);
+    std::array<int, 2> queries{}, contacts{}, missed{}, missed_within{}, stopped{}, stopped_within{}, apart{};
+    int wrong_truth = 0;
+    for (const test::CcdQuery& q : test::read_ccd_queries(*folder)) {
+        const int k = int(q.kind);
+        const Motion m = between(q.from, q.to);
+        const bool touch = test::toi_touch(q.kind, m, 0), near = test::toi_touch(q.kind, m, 1e-6);
+        ++queries[k];
+        contacts[k] += q.touch;
+        missed[k] += q.touch && !touch;
+        missed_within[k] += q.touch && !near;
+        stopped[k] += !q.touch && touch;
+        stopped_within[k] += !q.touch && near;
+        apart[k] += near && !comes_within(q.kind, m, 1e-6);
+        wrong_truth += test::exactly_touch(q.kind, q.from, q.to) != q.touch;
     }
-    for (const auto& [name, c] : {std::pair{"edge-edge", edges}, {"vertex-face", faces}})
-        WARN(name << ": " << c.queries << " queries, " << c.hits << " collide, " << c.missed << " missed, "
-                  << c.false_alarms << " false alarms");
-    CHECK(edges.queries == 4194);
-    CHECK(faces.queries == 3085);
-    CHECK(edges.hits == 187);
-    CHECK(faces.hits == 248);
-    CHECK(edges.missed == 0);
-    CHECK(faces.missed == 0);
+    CHECK(queries == std::array{3085, 4194});
+    CHECK(contacts == std::array{248, 187});
+    CHECK(missed == std::array{0, 0});
+    CHECK(missed_within == std::array{0, 0});
+    CHECK(wrong_truth == 0); // exact arithmetic agrees with the collection
+    // Of the misses 390 come within 1e-10, most of them within the rounding of their coordinates, and all
+    // that are stopped at a distance of 1e-6 do come within it.
+    CHECK(apart == std::array{0, 0});
+    CHECK(stopped[0] <= 145);
+    CHECK(stopped[1] <= 210);
+    CHECK(stopped_within == std::array{172, 256});
+}
+
+TEST_CASE("a random search against exact arithmetic finds no contact that is missed") {
+    test::Random random(21);
+    int contacts = 0, missed = 0, passed = 0, stopped = 0;
+    constexpr int families = int(test::CcdFamily::count), each = 1000;
+    for (int k = 0; k < families * 2 * each; ++k) {
+        const auto family = test::CcdFamily(k / 2 % families);
+        const Kind kind = Kind(k % 2);
+        double size;
+        const Motion m = test::random_ccd_query(family, kind, random, size);
+        const bool touch = test::exactly_touch(kind, m);
+        // Searching for the last digits of a distance of nothing takes long, and ends with a time below 1 the
+        // sooner.
+        const double t = toi(kind, m, {1e-9, 0, 1000});
+        contacts += touch;
+        missed += touch && t == 1;
+        stopped += t < 1 && !touch;
+        if (!touch) continue;
+        const double free = toi(kind, m, {});
+        Motion allowed = m;
+        for (Vec3& d : allowed.dx)
+            d *= free;
+        passed += free > 0 && test::exactly_touch(kind, allowed);
+    }
+    CHECK(contacts > 2500);
+    CHECK(missed == 0);
+    CHECK(passed == 0);
+    CHECK(stopped < 3000); // near misses on purpose, nearer than rounding
+}
+
+TEST_CASE("numbers too large for their products stop a motion rather than let it through") {
+    for (const double size : {1e60, 1e80, 1e120, 1e300, 1e-60, 1e-120, 1e-300})
+        for (const Known& k : known) {
+            Motion m = between(k.x0, k.x1);
+            for (int i = 0; i < 4; ++i) {
+                m.x[i] *= size;
+                m.dx[i] *= size;
+            }
+            INFO(k.name << " times " << size);
+            if (k.t >= 0) CHECK(toi(k.kind, m, {}) < 1);
+        }
 }

@@ -14,6 +14,7 @@
 #include <set>
 
 using namespace toile;
+using test::Random;
 using test::tetrahedron;
 using test::two_sheets;
 

@@ -47,14 +47,16 @@ double longest_of(const Motion& m) {
 }
 
 // By how much rounding can make a distance appear larger than it is; u = epsilon / 2 is the relative error of
-// an operation, L the largest coordinate, l the longest of the differences worked with. Outside of here: dx
-// may come from two rounded ends, and x + t dx is written down, 4 u L per coordinate, so sqrt(3) times that
-// per point and 14 u L between two. In here: positions at t are wrong by 5 u l (differences of places and of
-// motions, product, sum), two points by 10 u l; their projections on a unit vector by 3 u of their length, 12
-// u l for both places, which are below 2 l, and 6 u l for motions; the length of that vector, subtractions,
-// the division and the sum of times add 24 u l.
+// an operation, L the largest coordinate, l the longest of the differences worked with. Outside of here, x +
+// t dx is written down: 3 u L per coordinate, so sqrt(3) times that per point and below 6 epsilon L between
+// two. In here: positions at t are wrong by 5 u l (differences of places and of motions, product, sum), two
+// points by 10 u l; their projections on a unit vector by 3 u of their length, 12 u l for both places, which
+// are below 2 l, and 6 u l for motions; the length of that vector, subtractions, the division and the sum of
+// times add 24 u l. In all 6 epsilon L + 26 epsilon l, which 8 epsilon L covers for points of a mesh, much
+// nearer to each other than to the origin.
 double rounding_of(double largest, double longest_difference) {
-    return std::numeric_limits<double>::epsilon() * (7 * largest + 26 * longest_difference);
+    return std::numeric_limits<double>::epsilon() *
+           std::max(8 * largest, 6 * largest + 26 * longest_difference);
 }
 
 // Time from now at which the projections of the two simplices on `n` come within `target`: until then they

@@ -27,10 +27,10 @@ struct ToiOptions {
 /// min_distance + keep * (start distance - min_distance) all the way. Conservative: never later than the
 /// truth, and the distance at a t below 1 is within 5 % of what is to be kept (unless max_iterations ended
 /// the search before, as they may where a pair touches without closing speed). Distances count as smaller by
-/// a bound on all rounding: 7 epsilon of the largest coordinate, for storing x + t * dx, and 26 epsilon of
-/// the longest difference between the points or their motions. So no contact is missed, whatever the doubles,
-/// and a pair that comes nearer than this counts as touching. 0 when the pair starts at or below
-/// min_distance, and when the motion is not finite.
+/// a bound on all rounding: 6 epsilon of the largest coordinate, for storing x + t * dx, and 26 epsilon of
+/// the longest difference between the points or their motions; at least 8 epsilon of the largest coordinate.
+/// So no contact is missed, whatever the doubles, and a pair that comes nearer than this counts as touching.
+/// 0 when the pair starts at or below min_distance, and when the motion is not finite.
 double time_of_impact_point_triangle(const Motion& m, const ToiOptions& options); ///< x = p, a, b, c
 double time_of_impact_edge_edge(const Motion& m, const ToiOptions& options);      ///< x = a0, a1, b0, b1
 

@@ -311,8 +311,8 @@ def shirt_and_jacket(b):
     garment = Garment()
     sew_top(garment, b)
     wide = dict(b, neck_x=b["neck_x"] + 1.0, neck_y=b["neck_y"] + 0.6, shoulder_x=b["shoulder_x"] + 1.2,
-                armpit_y=b["armpit_y"] - 1.5)
-    sew_top(garment, wide, prefix="jacket_", ease=20, biceps_ease=11, hem=-5, sleeve=25.0, off=9.0, opens=True)
+                armpit_y=b["armpit_y"] - 4.0)
+    sew_top(garment, wide, prefix="jacket_", ease=16, biceps_ease=11, hem=-5, sleeve=25.0, off=9.0, opens=True)
     return garment
 
 
@@ -381,7 +381,7 @@ def two_layer_skirt(b):
     """A skirt, and over it a shorter and wider one."""
     garment = Garment()
     draft_skirt(garment, b)
-    draft_skirt(garment, b, prefix="over_", ease=1.5, skirt_length=46, flare=12, off=6.0)
+    draft_skirt(garment, b, prefix="over_", ease=3, skirt_length=46, flare=12, off=6.0)
     return garment
 
 

@@ -13,9 +13,9 @@ namespace toile {
 
 namespace {
 
-constexpr double on_body = 10;   // weight of its anchor's motion, over that of one neighbour's, for cloth on the body
+constexpr double on_body = 1e5;   // weight of the anchor's motion, over that of one neighbour's, for cloth on the body
 constexpr double off_body = 0.01; // m, distance at which a sixteenth of that weight is left
-constexpr double least = 1e-6;   // weight that is always left
+constexpr double least = 1e-6;    // weight that is always left
 
 Vec3 at(const Points& p, const Triangle& t, const Vec3& corner) {
     return corner[0] * p[t[0]] + corner[1] * p[t[1]] + corner[2] * p[t[2]];

@@ -265,12 +265,14 @@ DrapeOutcome run_job(const DrapeJob& job) {
     write_dressed(job, outcome);
     watch.lap(context, "write");
 
-    if (!sequence.frames.empty() && can_follow(outcome.result, outcome.body)) {
+    const bool whole = outcome.result.status != DrapeStatus::limit && can_follow(outcome.result, outcome.body);
+    if (!sequence.frames.empty() && whole) {
         options.max_seconds = job.drape.max_seconds - watch.total();
         follow_sequence(job, input, sequence.frames, options, outcome);
         watch.lap(context, "follow");
     } else if (!sequence.frames.empty()) {
-        context.warnings.push_back("the garment does not follow the sequence: its seams are open or it crosses something");
+        context.warnings.push_back("the garment does not follow the sequence: its drape was stopped, its seams are open or it "
+                                   "crosses something");
     }
 
     context.frames = outcome.frames;

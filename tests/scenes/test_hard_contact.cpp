@@ -3,12 +3,16 @@
 #include "draping/decisions.h"
 #include "tests/support/cloth_scene.h"
 #include "tests/support/shapes.h"
+#include "tests/support/sound_drape.h"
+#include "tests/support/temp_folder.h"
 
 #include <catch2/catch.hpp>
 
 #include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <fstream>
 #include <numbers>
 
 using namespace toile;
@@ -76,6 +80,39 @@ int node_nearest(const Points& x, const Vec3& p) {
     for (int i = 1; i < int(x.size()); ++i)
         if ((x[i] - p).squaredNorm() < (x[best] - p).squaredNorm()) best = i;
     return best;
+}
+
+using nlohmann::json;
+
+/// A rectangle, cm, its lower edge (0) at height `y` and as far in front as `z`, or behind.
+json rectangle(double width, double height, double y, double z) {
+    json panel = {{"vertices", {{-width / 2, 0}, {width / 2, 0}, {width / 2, height}, {-width / 2, height}}},
+                  {"edges",
+                   {{{"endpoints", {0, 1}}}, {{"endpoints", {1, 2}}}, {{"endpoints", {2, 3}}}, {{"endpoints", {3, 0}}}}}};
+    panel["translation"] = {0, y, z};
+    panel["rotation"] = {0, z < 0 ? 180 : 0, 0};
+    return panel;
+}
+
+json seam(const std::string& a, int edge_a, const std::string& b, int edge_b) {
+    const auto end = [](const std::string& panel, int edge) { return json{{"panel", panel}, {"edge", edge}}; };
+    return json::array({end(a, edge_a), end(b, edge_b)});
+}
+
+/// Front and back of a tube, sewn at both sides.
+void add_tube(json& pattern, const std::string& name, double width, double height, double y, double z) {
+    pattern["panels"][name + "_front"] = rectangle(width, height, y, z);
+    pattern["panels"][name + "_back"] = rectangle(width, height, y, -z);
+    pattern["stitches"].push_back(seam(name + "_front", 1, name + "_back", 3));
+    pattern["stitches"].push_back(seam(name + "_front", 3, name + "_back", 1));
+}
+
+std::string write_pattern(const TempFolder& folder, const json& pattern) {
+    const std::string path = folder / "skirt.json";
+    std::ofstream(path) << json{
+        {"pattern", pattern},
+        {"properties", {{"units_in_meter", 100}, {"curvature_coords", "relative"}, {"normalized_edge_loops", true}}}};
+    return path;
 }
 
 } // namespace
@@ -172,4 +209,58 @@ TEST_CASE("a strip is wrung by four turns", "[hard]") {
     CHECK(s.settle_to(1e-2, 1500));
     CHECK(s.crossings() == 0);
     CHECK(count_touching(s.problem->contact(), s.x).cloth_pairs > 100);
+}
+
+TEST_CASE("a skirt with a ruffle of 2.2 times its width", "[hard]") {
+    const TempFolder folder;
+    json pattern;
+    add_tube(pattern, "skirt", 50, 30, 65, 22);
+    add_tube(pattern, "ruffle", 110, 10, 50, 22);
+    pattern["panels"]["skirt_front"]["edges"][2]["label"] = "lower_interface";
+    pattern["panels"]["skirt_back"]["edges"][2]["label"] = "lower_interface";
+    pattern["stitches"].push_back(seam("skirt_front", 0, "ruffle_front", 2));
+    pattern["stitches"].push_back(seam("skirt_back", 0, "ruffle_back", 2));
+    DrapeJob job;
+    job.pattern = write_pattern(folder, pattern);
+    job.fabric = "silk";
+    job.edge_length = 0.025;
+    job.drape.hold = {"waist"};
+    job.garments = {folder / "a.obj"};
+    drape_soundly(job, job.fabric, 0.12, 0.5); // half of a ruffle's folds look inward
+}
+
+TEST_CASE("a skirt of two layers", "[hard]") {
+    const TempFolder folder;
+    json pattern;
+    add_tube(pattern, "under", 52, 45, 55, 20);
+    add_tube(pattern, "over", 58, 50, 50, 26);
+    for (const char* name : {"under_front", "under_back", "over_front", "over_back"})
+        pattern["panels"][name]["edges"][2]["label"] = "lower_interface";
+    DrapeJob job;
+    job.pattern = write_pattern(folder, pattern);
+    std::ofstream(folder / "skirt.toile.json") << json{
+        {"toile", 1},
+        {"panels", {{"over_front", {{"layer", 1}}}, {"over_back", {{"layer", 1}}}}}};
+    job.fabric = "linen";
+    job.edge_length = 0.03;
+    job.drape.hold = {"waist"};
+    const DrapeOutcome drape = run_job(job);
+    INFO(drape.result.where);
+    CHECK(drape.result.status == DrapeStatus::converged);
+    const Garment& g = drape.result.garment;
+    const Points& x = drape.result.state.positions;
+    const Inspection i = inspect(g, x, drape.body, PanelFabrics(g.panel_names.size(), fabric_preset(job.fabric)));
+    CHECK(i.intersections.cloth_avatar == 0);
+    CHECK(i.intersections.cloth_cloth == 0);
+    CHECK(i.seam_gap_max == 0);
+    CHECK(i.pieces == 2);
+    // The outer layer is outside, seen from the upright through the middle.
+    double inner = 0, outer = 0, inner_nodes = 0, outer_nodes = 0;
+    for (std::size_t v = 0; v < g.uv.size(); ++v) {
+        const Vec3& p = x[g.node_of_vertex[v]];
+        const bool over = g.panel_layers[g.panel_of_vertex[v]] > 0;
+        (over ? outer : inner) += std::hypot(p.x(), p.z());
+        ++(over ? outer_nodes : inner_nodes);
+    }
+    CHECK(outer / outer_nodes > inner / inner_nodes);
 }

@@ -16,8 +16,6 @@ namespace toile {
 
 namespace {
 
-constexpr double soft_limit = 0.7;             // turn of the strain limits' barrier that cloth beyond them can meet
-constexpr double hard_limit = 0.9;             // and the one to end with, hardened further where the cloth needs it
 constexpr double hardest_limit = 0.998;        // from there on, or where the cloth does not come to rest within
 constexpr int harder_iterations = 200;         // so many, limits are not hardened but
 constexpr double least_tighter = 2.5e-4;       // drawn in by such shares of theirs
@@ -33,19 +31,6 @@ constexpr double tight_gain = 0.1;             // this share has to have gone si
 constexpr int steps_per_iteration = 3;         // a motion takes more steps than Newton's method
 constexpr double coarse_motion_residual = 0.3; // less than the 1 of free fall
 
-/// What acts on a closed garment at every level beside cloth, contact and weight: pins, bands, hooks that
-/// stay and stitches that cannot become shared nodes.
-void add_fixtures(DrapeRun& run, ClothProblem& problem) {
-    for (const auto& [node, place] : pinned_places(run.staging, run.level, run.garment)) {
-        problem.pin(node);
-        run.x[node] = place;
-    }
-    problem.elastics = elastic_segments(run.staging, run.garment);
-    problem.hooks = hooks_on(run, run.garment, run.held, problem);
-    for (const Stitch& s : run.garment.stitches)
-        problem.stitches.push_back({s.a, s.b, s.r, inner_stitch_stiffness, 1e3});
-}
-
 /// Bands are softened with the cloth, which they would crumple otherwise.
 void soften(const DrapeRun& run, ClothProblem& problem, double softness) {
     problem.sheet().softness = softness;
@@ -57,28 +42,6 @@ void note_release(DrapeRun& run) {
     const std::map<std::string, double> now = label_heights(run.garment, run.x, run.carried);
     for (const std::string& label : run.carried)
         run.facts.hooks.push_back({label, false, run.carried_at[label], now.at(label), 0});
-}
-
-/// Says where a drape that has not converged is held up: too little cloth, what blocks the step, or the worst
-/// force.
-void note_where(DrapeRun& run, const ClothProblem& problem, SettleEnd end, int worst_node) {
-    std::string& where = run.result.where;
-    where = text("residual %.3g on ", run.result.residual) + place_of_node(run.garment, run.x, worst_node);
-    if (end == SettleEnd::stalled && problem.blocking_pair() >= 0)
-        where += "; no step is possible, " +
-                 place_of_pair(run.garment, run.x, problem.contact().pair(problem.blocking_pair())) + " is in the way";
-    const Tightness t = find_tightness(run.garment, run.x, run.fabrics);
-    if (t.triangle < 0) return;
-    const std::string stretched =
-        place_of_triangle(run.garment, run.x, t.triangle) +
-        text(" is stretched by %.1f %% along the %s, more than the %.1f %% that ", 100 * t.strain,
-             t.warp ? "warp" : "weft", 100 * t.limit) +
-        run.fabrics[run.garment.panel_of_triangle[t.triangle]].name + " allows";
-    if (t.missing > tight && run.result.status == DrapeStatus::stalled &&
-        touches_body(problem, run.x, run.x[run.garment.nodes(t.triangle)[0]].y(), run.edge_length()))
-        run.result.status = DrapeStatus::too_small;
-    where = stretched + (t.missing > tight ? text("; %.1f cm are missing round the garment there", 100 * t.missing)
-                                           : "; " + where);
 }
 
 void note_facts(DrapeRun& run, const ClothProblem& problem, const TouchFacts& touch) {
@@ -112,9 +75,39 @@ struct TightWatch {
     }
 };
 
-/// Settles on where cloth at rest is beyond its limits: these are hardened, and where the coordinates' last
-/// digits no longer tell the forces of harder ones, or the cloth does not come to rest between them and the body,
-/// drawn in by what the cloth is beyond them.
+} // namespace
+
+void add_fixtures(DrapeRun& run, ClothProblem& problem) {
+    for (const auto& [node, place] : pinned_places(run.staging, run.level, run.garment)) {
+        problem.pin(node);
+        run.x[node] = place;
+    }
+    problem.elastics = elastic_segments(run.staging, run.garment);
+    problem.hooks = hooks_on(run, run.garment, run.held, problem);
+    for (const Stitch& s : run.garment.stitches)
+        problem.stitches.push_back({s.a, s.b, s.r, inner_stitch_stiffness, 1e3});
+}
+
+void note_where(DrapeRun& run, const ClothProblem& problem, SettleEnd end, int worst_node) {
+    std::string& where = run.result.where;
+    where = text("residual %.3g on ", run.result.residual) + place_of_node(run.garment, run.x, worst_node);
+    if (end == SettleEnd::stalled && problem.blocking_pair() >= 0)
+        where += "; no step is possible, " +
+                 place_of_pair(run.garment, run.x, problem.contact().pair(problem.blocking_pair())) + " is in the way";
+    const Tightness t = find_tightness(run.garment, run.x, run.fabrics);
+    if (t.triangle < 0) return;
+    const std::string stretched =
+        place_of_triangle(run.garment, run.x, t.triangle) +
+        text(" is stretched by %.1f %% along the %s, more than the %.1f %% that ", 100 * t.strain,
+             t.warp ? "warp" : "weft", 100 * t.limit) +
+        run.fabrics[run.garment.panel_of_triangle[t.triangle]].name + " allows";
+    if (t.missing > tight && run.result.status == DrapeStatus::stalled &&
+        touches_body(problem, run.x, run.x[run.garment.nodes(t.triangle)[0]].y(), run.edge_length()))
+        run.result.status = DrapeStatus::too_small;
+    where = stretched + (t.missing > tight ? text("; %.1f cm are missing round the garment there", 100 * t.missing)
+                                           : "; " + where);
+}
+
 SettleResult settle_within_limits(DrapeRun& run, ClothProblem& problem, Cholesky& factor, const SettleOptions& o,
                                   SettleResult r) {
     const auto beyond = [&] { return r.end != SettleEnd::stopped && !problem.beyond_limits(run.x).empty(); };
@@ -139,8 +132,6 @@ SettleResult settle_within_limits(DrapeRun& run, ClothProblem& problem, Cholesky
     }
     return r;
 }
-
-} // namespace
 
 void settle_level(DrapeRun& run) {
     const auto start = DrapeRun::Clock::now();

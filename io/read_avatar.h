@@ -15,8 +15,17 @@ struct ReadAvatarOptions {
     std::uintmax_t max_bytes = 1u << 30; ///< larger files are refused
 };
 
+/// What a file's coordinates are.
+struct AvatarAxes {
+    double metres_per_unit = 1;
+    bool z_up = false; ///< otherwise y up
+};
+
+Vec3 in_metres(const Vec3& p, const AvatarAxes& axes); ///< and y up
+
 struct ReadAvatar {
     TriMesh body;                   ///< metres, y up, feet as in the file; closed, outside by the right-hand rule
+    AvatarAxes axes;                ///< of the file
     std::vector<std::string> notes; ///< unit and up axis found, holes closed, ...: for the report
 };
 

@@ -73,6 +73,22 @@ Json seconds(const DrapeResult& r, const ReportContext& context) {
     return out;
 }
 
+Json frames(const std::vector<FrameRow>& rows) {
+    Json out = Json::array();
+    for (const auto& [frame, r] : rows)
+        out.push_back({{"frame", frame},
+                       {"status", to_string(r.status)},
+                       {"where", r.where},
+                       {"residual", number(r.residual)},
+                       {"behind", r.behind},
+                       {"intersections",
+                        {{"cloth_avatar", r.intersections.cloth_avatar}, {"cloth_cloth", r.intersections.cloth_cloth}}},
+                       {"substeps", r.substeps},
+                       {"iterations", r.iterations},
+                       {"seconds", r.seconds}});
+    return out;
+}
+
 std::vector<std::string> joined(std::vector<std::string> a, const std::vector<std::string>& b) {
     a.insert(a.end(), b.begin(), b.end());
     return a;
@@ -169,7 +185,7 @@ nlohmann::ordered_json make_report(const DrapeResult& r, const TriMesh& body, co
     const Points& x = r.state.positions;
     const Contact contact = worst_contact(r, body, context.written_as_float);
     const DevelopabilityMeasure bent = measure_developability(r.garment, x);
-    return {
+    Json report = {
         {"status", to_string(r.status)},
         {"where", r.where},
         {"residual", number(r.residual)},
@@ -208,6 +224,8 @@ nlohmann::ordered_json make_report(const DrapeResult& r, const TriMesh& body, co
         {"decisions", joined(context.decisions, r.decisions)},
         {"warnings", joined(context.warnings, r.warnings)},
     };
+    if (!context.frames.empty()) report["frames"] = frames(context.frames);
+    return report;
 }
 
 std::string report_json(const DrapeResult& result, const TriMesh& body, const PanelFabrics& fabrics,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "draping/drape.h"
+#include "draping/follow.h"
 #include "draping/inspect.h"
 
 #include <nlohmann/json_fwd.hpp>
@@ -10,6 +11,12 @@
 #include <string>
 
 namespace toile {
+
+/// A frame of a body in motion that a garment followed.
+struct FrameRow {
+    int frame = 0; ///< its number
+    FrameReport report;
+};
 
 /// What a report says beyond the drape's own result.
 struct ReportContext {
@@ -24,6 +31,7 @@ struct ReportContext {
     std::optional<BodyMeasures> body_measures; ///< nothing: not a standing body, and no ease is measured
     /// A file of floats is written too: intersections and clearance are the worse of both.
     bool written_as_float = false;
+    std::vector<FrameRow> frames; ///< of a sequence, after the first; its absence in a report means that there was none
 };
 
 /// The strains of a garment as reports and inspections give them.

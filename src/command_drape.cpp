@@ -3,6 +3,7 @@
 
 #include "geometry/parallel.h"
 #include "geometry/text.h"
+#include "io/read_sequence.h"
 #include "src/quantity.h"
 #include "src/options.h"
 #include "src/pipeline.h"
@@ -26,7 +27,9 @@ struct DrapeArguments {
 void refuse_useless(const DrapeArguments& a) {
     if (a.job.garments.empty() && a.job.report.empty() && a.job.preview.empty() && !a.json)
         throw CommandLineError("there is nothing to write: name a file with -o, --report or --preview");
-    if (a.job.repair_avatar && a.job.avatar.empty())
+    if (!a.job.avatar.empty() && !a.job.avatar_sequence.empty())
+        throw CommandLineError("--avatar and --avatar-sequence both name the body");
+    if (a.job.repair_avatar && a.job.avatar.empty() && a.job.avatar_sequence.empty())
         throw CommandLineError("--repair-avatar needs --avatar; the built-in form is closed");
     for (const std::string& path : a.job.garments) {
         try {
@@ -48,7 +51,21 @@ std::string percent(double share) {
     return text("%.2f %%", 100 * share);
 }
 
-/// The report in five lines.
+void summarise_frames(std::ostream& out, const std::vector<FrameRow>& frames) {
+    int converged = 0, with_body = 0, with_itself = 0;
+    double seconds = 0;
+    for (const FrameRow& f : frames) {
+        converged += f.report.status == FrameStatus::converged;
+        with_body += f.report.intersections.cloth_avatar;
+        with_itself += f.report.intersections.cloth_cloth;
+        seconds += f.report.seconds;
+    }
+    out << text("frames: %d followed, %d converged; intersections in all: %d with the body, %d of the cloth with "
+                "itself; %.1f s per frame\n",
+                int(frames.size()), converged, with_body, with_itself, seconds / double(frames.size()));
+}
+
+/// The report in five lines, and one on the frames of a sequence.
 void summarise(std::ostream& out, const DrapeOutcome& outcome) {
     const auto r = nlohmann::json::parse(outcome.report);
     const auto& strain = r["strain"];
@@ -63,13 +80,25 @@ void summarise(std::ostream& out, const DrapeOutcome& outcome) {
     out << "stretch: warp to " << percent(strain["warp"]["max"]) << " of " << percent(strain["warp"]["limit"])
         << ", weft to " << percent(strain["weft"]["max"]) << " of " << percent(strain["weft"]["limit"])
         << "; compressed " << percent(strain["compressed_area"]) << " of the area\n";
-    if (!outcome.written.empty()) out << "written: " << joined(outcome.written) << '\n';
+    if (!outcome.frames.empty()) summarise_frames(out, outcome.frames);
+    constexpr std::size_t most_names = 12; // of a sequence, the first and the last tell the others
+    std::vector<std::string> written = outcome.written;
+    if (written.size() > most_names) written = {written.front(), "...", written.back()};
+    if (!written.empty()) out << "written: " << joined(written) << '\n';
+}
+
+std::string first_failure(const DrapeOutcome& outcome) {
+    for (const auto& [frame, r] : outcome.frames)
+        if (r.status != FrameStatus::converged)
+            return text("frame %d: ", frame) + to_string(r.status) + ": " + r.where;
+    return "not all frames were reached";
 }
 
 int drape_command(const DrapeArguments& arguments, const Console& console) {
     refuse_useless(arguments);
     set_threads(arguments.threads);
     DrapeJob job = arguments.job;
+    job.avatar_sequence = sequence_files(job.avatar_sequence);
     const Interrupt interrupt;
     ProgressLine line(console.err, console.terminal && !arguments.quiet);
     job.drape.progress = [&](const DrapeProgress& progress) {
@@ -89,8 +118,11 @@ int drape_command(const DrapeArguments& arguments, const Console& console) {
     }
     if (interrupt.asked())
         console.err << "toile: stopped by a signal; the state reached was written" << std::endl;
-    if (outcome.result.status == DrapeStatus::converged) return exit_made;
-    if (!interrupt.asked())
+    if (converged(job, outcome)) return exit_made;
+    if (interrupt.asked()) return exit_not_converged;
+    if (outcome.result.status == DrapeStatus::converged)
+        console.err << "toile: " << first_failure(outcome) << "; every frame reached was written" << std::endl;
+    else
         console.err << "toile: " << to_string(outcome.result.status)
                     << (outcome.result.where.empty() ? "" : ": " + outcome.result.where)
                     << "; the best state was written" << std::endl;
@@ -108,6 +140,11 @@ void add_drape(CLI::App& app, Command& chosen) {
         .add_option("--avatar", job.avatar,
                     "Body: OBJ, PLY, STL, GLB or COLLADA (default: the built-in form)")
         ->type_name("FILE");
+    command
+        .add_option("--avatar-sequence", job.avatar_sequence,
+                    "Body in motion: meshes of one topology, a folder of them, or a pattern like walk.%04d.obj; dressed "
+                    "in the first frame, followed through the others into numbered files")
+        ->type_name("FILE...");
     command.add_flag("--repair-avatar", job.repair_avatar, "Close the holes of a leaky body");
     add_form_measures(command, job.form);
     add_fabric(command, job.fabric, "Fabric of panels that name none");

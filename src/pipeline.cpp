@@ -5,18 +5,21 @@
 #include "geometry/parallel.h"
 #include "io/companion.h"
 #include "io/hash.h"
+#include "geometry/text.h"
 #include "io/preview.h"
 #include "io/read_avatar.h"
-#include "io/report.h"
+#include "io/read_sequence.h"
 #include "io/start_from.h"
 #include "io/write_file.h"
 #include "draping/hooks.h"
 #include "src/drape_input.h"
 #include "src/exit_code.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <set>
 
 namespace fs = std::filesystem;
@@ -46,9 +49,18 @@ private:
     Clock::time_point start_ = Clock::now(), last_ = start_;
 };
 
+/// The file of a frame: name.0001.obj for name.obj.
+std::string numbered(const std::string& path, int frame) {
+    const fs::path p(path);
+    return (p.parent_path() / (p.stem().string() + text(".%04d", frame) + p.extension().string())).string();
+}
+
 std::vector<std::string> targets(const DrapeJob& job) {
-    std::vector<std::string> all;
-    for (const std::string& garment : job.garments)
+    std::vector<std::string> garments = job.garments, all;
+    if (!job.avatar_sequence.empty()) garments.clear();
+    for (const int frame : frame_numbers(job.avatar_sequence))
+        for (const std::string& garment : job.garments) garments.push_back(numbered(garment, frame));
+    for (const std::string& garment : garments)
         for (const std::string& file : garment_files(garment))
             all.push_back(file);
     if (!job.preview.empty()) all.push_back(job.preview);
@@ -67,6 +79,7 @@ std::string input_hash(const DrapeJob& job) {
     add_file(companion_path(job.pattern));
     add_file(job.avatar);
     add_file(job.from);
+    for (const std::string& frame : job.avatar_sequence) add_file(frame);
     hash.add(job.fabric);
     for (const std::string& word : job.drape.hold)
         hash.add("hold " + word + '\n');
@@ -113,14 +126,70 @@ bool writes_floats(const DrapeJob& job) {
     return false;
 }
 
-void write_all(const DrapeJob& job, DrapeOutcome& outcome) {
+/// The body of a job, and its further frames.
+ReadSequence read_motion(const DrapeJob& job) {
+    if (!job.avatar_sequence.empty()) {
+        ReadAvatarOptions options;
+        options.repair = job.repair_avatar;
+        return read_sequence(job.avatar_sequence, options);
+    }
+    Body body = read_body(job.avatar, job.form, job.repair_avatar);
+    return {std::move(body.mesh), {}, std::move(body.notes)};
+}
+
+/// The garment files of one frame; of no sequence, those that were asked for.
+void write_garments(const DrapeJob& job, const Garment& garment, const Points& x, const TriMesh& body, int frame) {
+    WriteOptions options = job.write;
+    options.avatar = job.with_avatar ? &body : nullptr;
+    for (const std::string& path : job.garments)
+        write_garment(job.avatar_sequence.empty() ? path : numbered(path, frame), garment, x, options);
+}
+
+void write_dressed(const DrapeJob& job, const DrapeOutcome& outcome) {
     const Garment& garment = outcome.result.garment;
     const Points& x = outcome.result.state.positions;
-    WriteOptions options = job.write;
-    options.avatar = job.with_avatar ? &outcome.body : nullptr;
-    for (const std::string& path : job.garments)
-        write_garment(path, garment, x, options);
+    const std::vector<int> numbers = frame_numbers(job.avatar_sequence);
+    write_garments(job, garment, x, outcome.body, numbers.empty() ? 0 : numbers[0]);
     if (!job.preview.empty()) write_preview(job.preview, garment, x, outcome.body);
+}
+
+/// Tells of part of a job, from `begin` to `end` of the whole.
+std::function<bool(const DrapeProgress&)> part_of_job(const DrapeJob& job, double begin, double end) {
+    if (!job.drape.progress) return {};
+    return [tell = job.drape.progress, begin, end](DrapeProgress p) {
+        p.done = begin + (end - begin) * p.done;
+        if (end < 1) p.seconds_left = std::numeric_limits<double>::infinity();
+        return tell(p);
+    };
+}
+
+/// Lets the dressed garment follow the body through the frames and writes each that is done.
+void follow_sequence(const DrapeJob& job, const DrapeInput& input, const std::vector<Points>& frames,
+                     DrapeOptions options, DrapeOutcome& outcome) {
+    const std::vector<int> numbers = frame_numbers(job.avatar_sequence);
+    const std::vector<Triangle> cloth = node_triangles(outcome.result.garment);
+    std::vector<IntersectionCount> rounded;
+    options.progress = part_of_job(job, 1 / double(numbers.size()), 1);
+    FollowOptions how;
+    how.done = [&](int k, const Points& x) {
+        const TriMesh body{frames[k], outcome.body.triangles};
+        write_garments(job, outcome.result.garment, x, body, numbers[k + 1]);
+        if (writes_floats(job))
+            rounded.push_back(
+                count_intersections(cloth, rounded_to_float(x), body, outcome.result.garment.stitches));
+    };
+    const auto reports = follow(input.staging, outcome.result, outcome.body, frames, input.fabrics, options, how);
+    for (std::size_t k = 0; k < reports.size(); ++k) {
+        FrameRow& row = outcome.frames.emplace_back(FrameRow{numbers[k + 1], reports[k]});
+        if (rounded.empty()) continue;
+        IntersectionCount& n = row.report.intersections;
+        n.cloth_avatar = std::max(n.cloth_avatar, rounded[k].cloth_avatar);
+        n.cloth_cloth = std::max(n.cloth_cloth, rounded[k].cloth_cloth);
+    }
+    outcome.result.decisions.push_back(
+        text("the garment followed %d of %d further frames by statics, with at most %d iterations for a frame to come "
+             "to rest and %d motions of the body on the way to it",
+             int(reports.size()), int(frames.size()), how.max_iterations, how.max_substeps));
 }
 
 } // namespace
@@ -144,6 +213,13 @@ TriMesh form_of(const FormMeasures& measures) {
     }
 }
 
+bool converged(const DrapeJob& job, const DrapeOutcome& outcome) {
+    const auto came_to_rest = [](const FrameRow& row) { return row.report.status == FrameStatus::converged; };
+    return outcome.result.status == DrapeStatus::converged &&
+           outcome.frames.size() + 1 >= job.avatar_sequence.size() &&
+           std::all_of(outcome.frames.begin(), outcome.frames.end(), came_to_rest);
+}
+
 Body read_body(const std::string& avatar, const FormMeasures& form, bool repair) {
     if (avatar.empty()) return {form_of(form), {}};
     ReadAvatarOptions options;
@@ -156,19 +232,22 @@ DrapeOutcome run_job(const DrapeJob& job) {
     Stopwatch watch;
     ReportContext context;
     DrapeOutcome outcome;
-    refuse_targets({job.pattern, companion_path(job.pattern), job.avatar}, targets(job));
+    std::vector<std::string> inputs = job.avatar_sequence;
+    inputs.insert(inputs.end(), {job.pattern, companion_path(job.pattern), job.avatar});
+    refuse_targets(inputs, targets(job));
 
     Pattern pattern;
     if (!is_staged(job.pattern)) pattern = sound_pattern(job.pattern, context.warnings);
-    Body body = read_body(job.avatar, job.form, job.repair_avatar);
-    context.decisions = body.notes;
-    context.body_measures = measures_of(body.mesh, context.decisions);
+    ReadSequence sequence = read_motion(job);
+    const TriMesh& body = outcome.body = std::move(sequence.body);
+    context.decisions = sequence.notes;
+    context.body_measures = measures_of(body, context.decisions);
     context.input_hash = input_hash(job);
-    const Avatar avatar{body.mesh, smoothed_toward_core(body.mesh, 0.01)};
+    const Avatar avatar{body, smoothed_toward_core(body, 0.01)};
     watch.lap(context, "read");
 
     const DrapeInput input = is_staged(job.pattern)
-                                 ? read_staged_input(job.pattern, job.fabric, body.mesh)
+                                 ? read_staged_input(job.pattern, job.fabric, body)
                                  : input_of(pattern, job.fabric, job.edge_length, job.drape.max_memory);
     context.decisions.insert(context.decisions.end(), input.notes.begin(), input.notes.end());
     refuse_unknown_labels(job, input.staging);
@@ -177,15 +256,26 @@ DrapeOutcome run_job(const DrapeJob& job) {
     DrapeOptions options = job.drape;
     options.max_seconds -= watch.total();
     options.from = earlier_positions(job.from, input.staging, context.decisions);
+    options.progress = part_of_job(job, 0, 1 / double(1 + sequence.frames.size()));
     outcome.result = drape(input.staging, avatar, input.fabrics, options);
     if (job.interrupted && job.interrupted())
         outcome.result.where = "stopped by a signal before it had converged";
-    outcome.body = std::move(body.mesh);
     watch.skip();
 
-    write_all(job, outcome);
+    write_dressed(job, outcome);
     watch.lap(context, "write");
 
+    const bool whole = outcome.result.status != DrapeStatus::limit && can_follow(outcome.result, outcome.body);
+    if (!sequence.frames.empty() && whole) {
+        options.max_seconds = job.drape.max_seconds - watch.total();
+        follow_sequence(job, input, sequence.frames, options, outcome);
+        watch.lap(context, "follow");
+    } else if (!sequence.frames.empty()) {
+        context.warnings.push_back("the garment does not follow the sequence: its drape was stopped, its seams are open or it "
+                                   "crosses something");
+    }
+
+    context.frames = outcome.frames;
     context.fabric = input.fabric;
     context.blas = blas_name();
     context.threads = threads();

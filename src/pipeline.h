@@ -4,6 +4,7 @@
 // From files to files: read, check, triangulate, drape, write. Start reading toile here.
 
 #include "draping/drape.h"
+#include "io/report.h"
 #include "io/write_garment.h"
 #include "sewing/form.h"
 
@@ -15,6 +16,7 @@ namespace toile {
 struct DrapeJob {
     std::string pattern; ///< file: a pattern, or a staged mesh (.obj)
     std::string avatar;  ///< file; empty: the built-in form of these measures
+    std::vector<std::string> avatar_sequence; ///< files of a body in motion, instead of `avatar`; dressed in the first
     FormMeasures form;
     bool repair_avatar = false;
     std::string fabric;        ///< preset; empty: what the pattern says, else poplin
@@ -32,17 +34,22 @@ struct DrapeJob {
 struct DrapeOutcome {
     DrapeResult result;
     TriMesh body;
+    std::vector<FrameRow> frames;     ///< of a sequence, after the first
     std::string report;               ///< JSON text
     std::vector<std::string> written; ///< files
 };
 
 /// Does the job. Throws InputError (a sentence) when a file is refused or a target cannot be written, before
-/// anything is; a drape that does not converge is written all the same, and `result.status` says so.
+/// anything is; a drape that does not converge is written all the same, and `result.status` says so. Of a sequence
+/// every frame's garment is written to files of its number, name.0001.obj for name.obj, as soon as it is done.
 DrapeOutcome run_job(const DrapeJob& job);
 
 /// Minutes of work must not end in a target that cannot be written or in an overwritten input: throws InputError. Inputs
 /// may be empty.
 void refuse_targets(const std::vector<std::string>& inputs, const std::vector<std::string>& targets);
+
+/// Whether the drape and all frames asked for converged.
+bool converged(const DrapeJob& job, const DrapeOutcome& outcome);
 
 /// The built-in form. Throws CommandLineError when a measure is out of range.
 TriMesh form_of(const FormMeasures& measures);

@@ -489,13 +489,13 @@ double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const 
             }
     });
     Limit least{1.0, -1};
-    if (shares) shares->assign(nodes_, 1.0);
+    if (shares) shares->assign(body_dx ? step.size() : nodes_, 1.0);
     for (const auto& found : limits)
         for (const auto& [t, i] : found) {
             if (t < least.first) least = {t, i};
             if (!shares) continue;
             for (const int k : pairs_[i].p)
-                if (k < nodes_) (*shares)[k] = std::min((*shares)[k], t);
+                if (k < int(shares->size())) (*shares)[k] = std::min((*shares)[k], t);
         }
     if (blocking) *blocking = least.second;
     return least.first;

@@ -83,7 +83,7 @@ public:
 
     /// Largest t in [0, 1] for which no pair passes its floor between x and x + t dx (and body + t body_dx).
     /// `blocking`, when given, receives the pair that limits t, -1 when none, and `shares` the least such t of each
-    /// node's own pairs.
+    /// node's own pairs, followed, when the body moves, by that of each body point's.
     double feasible_step(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx = nullptr,
                          int* blocking = nullptr, std::vector<double>* shares = nullptr) const;
 

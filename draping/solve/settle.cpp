@@ -22,6 +22,7 @@ constexpr int old_factor_cg = 25;  // CG iterations after which the factor is re
 constexpr double worth_parting = 0.9; // share of a step below which every point goes as far as it can by itself
 constexpr double sufficient = 1e-4;   // of the decrease that the slope promises
 constexpr double static_time_step = 100; // s: from there on steps are Newton's
+constexpr double most_time_step = 1e6;   // s: no mass is left, but some steps shorter a loose piece has one again
 constexpr double too_stiff = 1.2;        // gain over what was promised from which longer steps are looked for
 constexpr double tail_time_step = 1; // s: before that the state is still travelling, however small the forces
 
@@ -292,7 +293,7 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
             else if (ratio > 0.75 && boundary)
                 radius *= 2.5;
         } else if (accepted && t == feasible && actual > 0.5 * predicted) {
-            h *= 2;
+            h = std::min(2 * h, most_time_step);
         } else if (!accepted || actual < 0.1 * predicted) {
             h *= 0.5;
         }

@@ -28,7 +28,7 @@ const std::map<std::string, Strings> doors = {
     {"cholmod.h", {"sewing/sparse_solve.cpp", "draping/algebra/cholesky.cpp", "src/version.cpp"}},
     {"suitesparse/", {}},
     {"nlopt", {}},
-    {"assimp/", {"io/read_avatar.cpp", "src/version.cpp"}},
+    {"assimp/", {"io/read_polygons.cpp", "src/version.cpp"}},
     {"embree3/", {"io/preview.cpp", "src/version.cpp"}},
     {"meshoptimizer", {"geometry/simplify.cpp", "src/version.cpp"}},
     {"tbb/", {"geometry/parallel.cpp", "src/version.cpp"}},

@@ -97,12 +97,16 @@ void drag_places(Friction& f, const Points& x) {
 }
 
 void follow(Friction& f, const Points& x, int i, double force, bool at_rest) {
+    const bool last = f.kept[i] <= least_kept; // and what slides stays as it is
     if (friction_force(f, x, i).norm() > f.coefficient * force) {
         f.force[i] = std::min(f.force[i], force);
         if (f.raised[i] && at_rest) f.kept[i] = std::max(least_kept, 1 - 2 * (1 - f.kept[i]));
         f.raised[i] = 0;
-    } else if (force - f.force[i] > friction_slack(f, x, i) * force &&
-               share(f, x, i) + (f.kept[i] > least_kept ? 1e-9 : -1e-9) > f.kept[i]) {
+        return;
+    }
+    const double used = share(f, x, i);
+    const bool slips = last ? used > f.kept[i] : used >= f.kept[i];
+    if (slips && force - f.force[i] > friction_slack(f, x, i) * force) {
         f.force[i] = force;
         f.raised[i] = 1;
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A strip of length L hangs from a clamp that points straight down, nearer to the floor than it is long, so that it
-// buckles. Its tip stands on the floor below the clamp and pushes sideways: it sticks while friction is at least the
-// ratio of what it pushes sideways to what it pushes down. By the heavy elastica (s = 1 at the tip, lengths in L,
-// forces in D / L^2, th from the downward vertical):
+// A strip of length L hangs from a clamp that points straight down, nearer to the floor than it is long, so
+// that it buckles. Its tip stands on the floor below the clamp and pushes sideways: it sticks while friction
+// is at least the ratio of what it pushes sideways to what it pushes down. By the heavy elastica (s = 1 at
+// the tip, lengths in L, forces in D / L^2, th from the downward vertical):
 //     th'' = -(V - G (1 - s)) sin th - H cos th,  th(0) = 0,  th'(1) = 0,  x(1) = 0,  y(1) = -(1 - eps),
 // G = density g L^3 / D. The ratios H / V below are those of its first mode, solved to 1e-9.
 
@@ -20,12 +20,12 @@ using namespace toile::test;
 namespace {
 
 constexpr double length = 1, width = 0.15; // m: large against the 0.1 mm of a tie
-constexpr double above = 0.49e-3;             // m, about where the tip stands on the barrier
+constexpr double above = 0.49e-3;          // m, about where the tip stands on the barrier
 
 struct Scene {
     double weight; ///< G
     double eps;
-    double ratio;  ///< H / V
+    double ratio; ///< H / V
 };
 
 Fabric strip(double weight) {
@@ -72,7 +72,9 @@ Tip let_go(const Scene& scene, double friction) {
     problem.gravity = scene.weight > 0 ? 9.81 : 0;
     for (int i = 0; i < int(x.size()); ++i)
         if (mesh.points[i].x() < 1e-9) problem.pin(i);
-    for (int i : tip) problem.hooks.push_back({i, Vec3(0, 0, x[i].z()), Vec3(1, 0, 1), 1800 * strip(scene.weight).bend_warp, 1e6});
+    for (int i : tip)
+        problem.hooks.push_back(
+            {i, Vec3(0, 0, x[i].z()), Vec3(1, 0, 1), 1800 * strip(scene.weight).bend_warp, 1e6});
     Cholesky factor;
     SettleOptions options;
     options.tolerance = 1e-4;
@@ -83,16 +85,21 @@ Tip let_go(const Scene& scene, double friction) {
     options.max_iterations = 100;
     const SettleResult last = settle(problem, x, factor, options);
     Tip t;
-    for (int i : tip) t.moved = std::max(t.moved, (x[i] - start[i]).norm());
+    for (int i : tip)
+        t.moved = std::max(t.moved, (x[i] - start[i]).norm());
     t.settled = last.end == SettleEnd::settled;
     return t;
 }
 
 } // namespace
 
-TEST_CASE("the tip of a buckled strip slips below the friction that the elastica asks for, to 3 %", "[validation]") {
-    for (const Scene& s : {Scene{0, 0.05, 0.1035447758}, {0, 0.3, 0.3264913142}, {5, 0.1, 0.1642834147},
-                           {10, 0.25, 0.3174241617}, {20, 0.2, 0.2950230703}}) {
+TEST_CASE("the tip of a buckled strip slips below the friction that the elastica asks for, to 3 %",
+          "[validation]") {
+    for (const Scene& s : {Scene{0, 0.05, 0.1035447758},
+                           {0, 0.3, 0.3264913142},
+                           {5, 0.1, 0.1642834147},
+                           {10, 0.25, 0.3174241617},
+                           {20, 0.2, 0.2950230703}}) {
         INFO("weight " << s.weight << ", eps " << s.eps);
         const Tip sticks = let_go(s, 1.03 * s.ratio);
         CHECK(sticks.settled);

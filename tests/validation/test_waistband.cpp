@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A tight band round a cone, as a waist is on a body: what friction has to hold is the slope of the body, since the
-// band's own tension pulls it towards the narrow end. With the hoop tension of the band T, radius r, weight per area
-// w and half angle a of the cone, the tension presses T / r on the axis, of which T / r cos a - w sin a is normal to a
-// cone that narrows downwards and T / r sin a + w cos a along it: the band holds while
+// A tight band round a cone, as a waist is on a body: what friction has to hold is the slope of the body,
+// since the band's own tension pulls it towards the narrow end. With the hoop tension of the band T, radius
+// r, weight per area w and half angle a of the cone, the tension presses T / r on the axis, of which T / r
+// cos a - w sin a is normal to a cone that narrows downwards and T / r sin a + w cos a along it: the band
+// holds while
 //     tan(a + atan(w r / T)) <= friction.
-// On a cone that widens downwards the weight pulls the other way, and it holds while tan(a - atan(w r / T)) <= friction.
+// On a cone that widens downwards the weight pulls the other way, and it holds while tan(a - atan(w r / T))
+// <= friction.
 
 #include "draping/cloth.h"
 #include "draping/solve/settle.h"
@@ -25,8 +27,8 @@ constexpr double waist = 0.1;    // m, radius of the cone at the middle of the b
 constexpr double height = 0.03;  // m, of the band along the cone
 constexpr double above = 0.4e-3; // m, from the cone to the band
 
-/// Radius at the distance s along the cone, upwards from the middle of the band; `widens` is 1 for a cone that widens
-/// upwards.
+/// Radius at the distance s along the cone, upwards from the middle of the band; `widens` is 1 for a cone
+/// that widens upwards.
 Vec3 on_cone(double angle, double widens, double round, double s, double off) {
     const double radius = waist + widens * s * std::sin(angle) + off * std::cos(angle);
     return {radius * std::cos(round), s * std::cos(angle) - widens * off * std::sin(angle),
@@ -54,8 +56,8 @@ struct Band {
     Points x;
 };
 
-/// Cut to the cone and sewn to a ring, the warp all round, `strain` too short for where it is put, and with as much more
-/// height as the tension takes from it.
+/// Cut to the cone and sewn to a ring, the warp all round, `strain` too short for where it is put, and with
+/// as much more height as the tension takes from it.
 Band band(double angle, double widens, double strain, double poisson) {
     const double length = 2 * pi * waist;
     const FlatMesh flat = jittered_rectangle(length, height, 0.0075, 0.25, 3);
@@ -81,7 +83,8 @@ Band band(double angle, double widens, double strain, double poisson) {
     Band b{close_seams(open, &node), {}};
     b.x.resize(b.garment.node_count);
     for (int i = 0; i < open.node_count; ++i)
-        b.x[node[i]] = on_cone(angle, widens, flat.points[i].x() / waist, flat.points[i].y() - height / 2, above);
+        b.x[node[i]] =
+            on_cone(angle, widens, flat.points[i].x() / waist, flat.points[i].y() - height / 2, above);
     return b;
 }
 
@@ -92,22 +95,27 @@ struct Held {
     double sunk = 0;     ///< m, mean
 };
 
-/// Hooks hold the band at its height while it comes to rest on the cone without friction; then they are let go.
+/// Hooks hold the band at its height while it comes to rest on the cone without friction; then they are let
+/// go.
 Held let_go(const Fabric& fabric, double friction, double angle, double widens, double strain) {
     Band b = band(angle, widens, strain, fabric.poisson);
     ContactOptions contact;
     contact.body = contact.cloth = {0.5e-3, 0.5e-4, 1e7};
     ClothProblem problem(b.garment, {fabric}, cone(angle, widens), contact);
     problem.gravity = 9.81;
-    for (int i = 0; i < b.garment.node_count; ++i) problem.hooks.push_back({i, b.x[i], Vec3::UnitY(), 5, 1});
+    for (int i = 0; i < b.garment.node_count; ++i)
+        problem.hooks.push_back({i, b.x[i], Vec3::UnitY(), 5, 1});
     Cholesky factor;
     SettleOptions options;
     REQUIRE(settle(problem, b.x, factor, options).end == SettleEnd::settled);
     Held h;
     double pressed = 0, weight = 0; // N
-    for (const Vec3& f : problem.contact().body_forces(problem.contact().active(b.x))) pressed += f.norm();
-    for (double m : problem.node_mass()) weight += 9.81 * m;
-    h.lean = std::asin(weight * std::cos(angle) / pressed); // near enough: the tension presses many times the weight
+    for (const Vec3& f : problem.contact().body_forces(problem.contact().active(b.x)))
+        pressed += f.norm();
+    for (double m : problem.node_mass())
+        weight += 9.81 * m;
+    h.lean = std::asin(weight * std::cos(angle) /
+                       pressed); // near enough: the tension presses many times the weight
     const Points start = b.x;
     problem.hooks.clear();
     problem.rest_here(b.x, friction, true);
@@ -123,19 +131,22 @@ Held let_go(const Fabric& fabric, double friction, double angle, double widens, 
 
 } // namespace
 
-TEST_CASE("a waistband holds on a cone within the angle of friction and slides off beyond it", "[validation]") {
+TEST_CASE("a waistband holds on a cone within the angle of friction and slides off beyond it",
+          "[validation]") {
     for (const auto& [name, strain] : {std::pair{"poplin", 0.006}, {"jersey", 0.12}})
         for (double widens : {1.0, -1.0}) {
             const Fabric& f = fabric_preset(name);
             INFO(name << (widens > 0 ? ", narrow below" : ", narrow above"));
             for (double within : {3.0, 1.0}) {
-                const Held held = let_go(f, f.friction, std::atan(f.friction) - within * degree, widens, strain);
+                const Held held =
+                    let_go(f, f.friction, std::atan(f.friction) - within * degree, widens, strain);
                 CHECK(held.lean < 0.5 * degree); // so that the slope alone decides
                 CHECK(held.settled);
                 CHECK(held.farthest < 1e-4);
             }
             for (double beyond : {1.0, 3.0}) {
-                const Held lost = let_go(f, f.friction, std::atan(f.friction) + beyond * degree, widens, strain);
+                const Held lost =
+                    let_go(f, f.friction, std::atan(f.friction) + beyond * degree, widens, strain);
                 CHECK(widens * lost.sunk > 2e-3); // towards the narrow end, until nothing pulls any more
             }
         }

@@ -78,10 +78,7 @@ ClothProblem::ClothProblem(const Garment& garment, const PanelFabrics& fabrics, 
 }
 
 void ClothProblem::rest_here(const Points& x, double coefficient, bool at_rest) {
-    friction.coefficient = coefficient;
-    friction.place = x;
-    friction.normal.assign(x.size(), Vec3::UnitY());
-    friction.force.assign(x.size(), 0.0);
+    friction = friction_at(x, coefficient);
     arrivals_ = 0;
     residual_ = renewed_at_ = std::numeric_limits<double>::infinity();
     near_rest_ = rising_ = false;
@@ -116,16 +113,10 @@ void ClothProblem::renew_friction(const Points& x) {
     }
 }
 
-void ClothProblem::weaken_friction(const Points& x) {
+void ClothProblem::adapt_friction(const Points& x) {
     const Points force = contact_.body_forces(active_);
-    for (int i = 0; i < points(); ++i) {
-        if (!(friction.force[i] > 0)) continue;
-        const double now = force[i].norm();
-        if (friction_force(friction, x, i).norm() > friction.coefficient * now)
-            friction.force[i] = std::min(friction.force[i], now);
-        else if (about_to_slip(friction, x, i) && now - friction.force[i] > friction_slack(friction, x, i) * now)
-            friction.force[i] = now;
-    }
+    for (int i = 0; i < points(); ++i)
+        if (friction.force[i] > 0) follow(friction, x, i, force[i].norm(), residual_ < friction_rest);
 }
 
 // What is left of the forces at rest is friction. The state came to rest with the normals of a few steps before: a
@@ -164,7 +155,7 @@ void ClothProblem::arrive(const Points& x) {
     const bool renew = arrivals_ % renew_every == 0 || residual_ < 0.1 * renewed_at_;
     ++arrivals_;
     if (near_rest_ && !rising_) {
-        weaken_friction(x);
+        adapt_friction(x);
     } else if (renew || near_rest_) {
         renewed_at_ = residual_;
         renew_friction(x);

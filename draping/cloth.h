@@ -73,7 +73,7 @@ private:
     void make_pattern();
     void gradient_with(const std::vector<ActivePair>& active, const Points& x, Eigen::VectorXd& g) const;
     void renew_friction(const Points& x);
-    void weaken_friction(const Points& x);
+    void adapt_friction(const Points& x);
     void take_up_friction(const Points& x);
 
     Sheet sheet_;

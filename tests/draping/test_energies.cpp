@@ -153,6 +153,7 @@ void add_friction(std::vector<EnergyCase>& cases) {
             f.place.push_back(random.vec3(0.1));
             f.normal.push_back(n);
             f.force.push_back(x.size() < 9 ? random.in(1e-4, 1e-2) : 0);
+            f.kept.push_back(seed == 1 ? 0.995 : 0.95);
             x.push_back(f.place.back() + slips * f.slip * t + random.in(-1e-3, 1e-3) * n);
         }
         const TestedEnergy energy = block_energy(

@@ -54,6 +54,11 @@ ContactCloth contact_cloth(const Garment& g) {
     return c;
 }
 
+TangledCloth tangled_cloth(const Garment& g, double edge_length) {
+    ContactCloth cloth = contact_cloth(g);
+    return {std::move(cloth.triangles), g.edges, edge_length, std::move(cloth.sewn_to_edge)};
+}
+
 std::vector<double> node_masses(const Garment& g, const PanelFabrics& fabrics) {
     std::vector<double> mass(g.node_count, 0.0);
     for (std::size_t t = 0; t < g.triangles.size(); ++t) {

@@ -5,6 +5,7 @@
 
 #include "draping/contact/contact.h"
 #include "draping/contact/friction.h"
+#include "draping/contact/untangle.h"
 #include "draping/energy/elastic.h"
 #include "draping/energy/sheet.h"
 #include "draping/energy/spring.h"
@@ -17,6 +18,9 @@ namespace toile {
 
 /// The cloth of a garment as contact sees it.
 ContactCloth contact_cloth(const Garment& garment);
+
+/// The same as untangling sees it; `edge_length` (m) is the mean of its edges.
+TangledCloth tangled_cloth(const Garment& garment, double edge_length);
 
 /// kg per node.
 std::vector<double> node_masses(const Garment& garment, const PanelFabrics& fabrics);

@@ -99,7 +99,7 @@ void prove(DrapeRun& run) {
     run.result.status = DrapeStatus::stalled;
     run.result.where = text("%d triangle pairs of cloth and body and %d of cloth and cloth cross", n.cloth_avatar,
                             n.cloth_cloth);
-    const std::vector<ClothCrossing> own = find_crossings(tangled_cloth(run), run.x);
+    const std::vector<ClothCrossing> own = find_crossings(tangled_cloth(run.garment, run.edge_length()), run.x);
     if (!own.empty()) run.result.where += ", the first on " + place_of_triangle(run.garment, run.x, own[0].triangle);
 }
 

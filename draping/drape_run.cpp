@@ -14,9 +14,6 @@ namespace toile {
 namespace {
 
 constexpr double contact_share = 0.06;     // of the edge length: contact distance of levels that are not the last
-constexpr double floor_share = 0.1;        // of the contact distance that is never entered
-constexpr double barrier_stiffness = 1e7;  // Pa/m for a cloth of 0.15 kg/m2 at a distance of half a millimetre
-constexpr double cloth_stiffness = 0.1;    // of the barrier, between cloth and cloth, which press lightly
 constexpr double coarse_compression = 0.2; // of the fabric's, on levels that are not the last
 constexpr double near = 0.9;               // of the memory limit; the rest is for what is taken between two looks
 constexpr double growth = 1.2;             // power of the vertices with which memory grows; factors outgrow meshes
@@ -106,13 +103,7 @@ PanelFabrics DrapeRun::level_fabrics() const {
 ContactOptions DrapeRun::contact_options() const {
     const double distance =
         last_level() ? options.clearance : std::max(options.clearance, contact_share * edge_length());
-    ContactOptions c;
-    c.body.distance = distance;
-    c.body.floor = floor_share * distance;
-    c.body.stiffness = barrier_stiffness * std::max(0.05, density) / 0.15 * (0.5e-3 / distance);
-    c.cloth = c.body;
-    c.cloth.stiffness *= cloth_stiffness;
-    return c;
+    return barriers_at(distance, std::max(0.05, density));
 }
 
 std::vector<std::string> all_hooked(const DrapeRun& run) {

@@ -8,10 +8,18 @@ namespace toile {
 
 namespace {
 
+constexpr double grow_distance = 2e-3; // m, contact distance while the body grows
 constexpr double grow_share = 0.5; // of the way to the cloth that the body takes at once, lest it get stuck there
 constexpr double grow_gain = 0.03; // share of the way left that counts as nearer
 
 } // namespace
+
+ContactOptions while_growing(const ContactOptions& at_rest) {
+    ContactOptions wide = at_rest;
+    wide.body.distance = std::max(at_rest.body.distance, grow_distance);
+    wide.body.stiffness *= at_rest.body.distance / wide.body.distance;
+    return wide;
+}
 
 bool grow_body(ClothProblem& problem, const Points& full, const Points& x, int patience,
                const std::function<bool(const SettleOptions&)>& settle) {

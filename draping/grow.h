@@ -10,6 +10,10 @@ namespace toile {
 
 inline constexpr int grow_patience = 10; ///< rounds in which a body has to come nearer to its full size
 
+/// The barriers while a body grows, in place of those of cloth at rest: the body's reaches farther, for the farther it
+/// does, the farther cloth is pushed along in a round.
+ContactOptions while_growing(const ContactOptions& at_rest);
+
 /// Moves the body of the problem's contact on straight lines from where it is to `full` (as many points), in rounds of
 /// a step that leaves nothing crossed and some iterations of the cloth: `settle` makes these on x with the options that
 /// it is given, and returns whether to go on. Ends early when in `patience` rounds the body has come no nearer.

@@ -48,9 +48,7 @@ void measure_surface(const TriMesh& mesh, Inspection& found) {
         found.area += area;
         found.flat_triangles += area == 0;
     }
-    for (const auto& [a, b] : edges.ends)
-        found.mean_edge += (mesh.points[a] - mesh.points[b]).norm();
-    if (edges.size() > 0) found.mean_edge /= edges.size();
+    found.mean_edge = mean_length(edges, mesh.points);
 }
 
 // ---- crossings

@@ -4,71 +4,28 @@
 #include "draping/grow.h"
 #include "geometry/solid.h"
 
-#include <algorithm>
-#include <limits>
-
 namespace toile {
-
-namespace {
-
-constexpr double grow_distance = 2e-3; // m, contact distance while the body grows back
-
-/// Cloth that crosses itself after sewing, or only on the finer mesh, is taken apart before contact takes
-/// over. Returns whether nothing crosses and nothing is too near.
-bool take_apart(DrapeRun& run, Contact& contact, const UntangleOptions& how) {
-    const TangledCloth tangled = tangled_cloth(run);
-    for (int round = 0; round < 10; ++round) {
-        const Untangled u = untangle(tangled, run.x, how);
-        run.facts.untangled = std::max(run.facts.untangled, u.before);
-        if (u.after > 0) return false;
-        if (contact.widen(run.x) == 0 && find_crossings(tangled, run.x).empty()) return true;
-    }
-    return false;
-}
-
-/// What crosses or is too near is left out of contact with other cloth.
-void leave_out_tangle(const DrapeRun& run, Contact& contact) {
-    std::vector<char> tangle(run.garment.node_count, 0);
-    const std::vector<Triangle> triangles = node_triangles(run.garment);
-    for (const ClothCrossing& c : find_crossings(tangled_cloth(run), run.x)) {
-        for (const int i : run.garment.edges.ends[c.edge]) tangle[i] = 1;
-        for (const int i : triangles[c.triangle]) tangle[i] = 1;
-    }
-    contact.leave_out({});
-    for (const ContactPair& p : contact.violations(run.x))
-        if (!p.with_body)
-            for (const int i : p.p) tangle[i] = 1;
-    contact.leave_out(tangle);
-}
-
-} // namespace
-
-TangledCloth tangled_cloth(const DrapeRun& run) {
-    ContactCloth cloth = contact_cloth(run.garment);
-    return {std::move(cloth.triangles), run.garment.edges, run.edge_length(), std::move(cloth.sewn_to_edge)};
-}
 
 bool take_apart_or_leave_out(DrapeRun& run, Contact& contact) {
     const std::vector<Triangle> cloth = node_triangles(run.garment);
     const auto in_body = [&](const Points& x) { return count_intersections(cloth, x, run.body).cloth_avatar; };
     const Points before = run.x;
+    const TangledCloth tangled = tangled_cloth(run.garment, run.edge_length());
     // A few crossings in a tight place need small motions, folds that lie in each other large ones. A level
     // starts with some of the cloth in the body, where fine triangles cut the curves of coarse ones.
     for (const UntangleOptions& how : {UntangleOptions{0.4, 8}, UntangleOptions{0.1, 2}}) {
         contact.leave_out({});
-        if (take_apart(run, contact, how) && (run.x == before || in_body(run.x) <= 2 * in_body(before))) return true;
+        const bool apart = take_apart(tangled, contact, run.x, how, run.facts.untangled);
+        if (apart && (run.x == before || in_body(run.x) <= 2 * in_body(before))) return true;
         run.x = before;
     }
-    leave_out_tangle(run, contact);
+    contact.leave_out(tangle_of(tangled, contact, run.x));
     return false;
 }
 
 void clear_of_body(DrapeRun& run, ClothProblem& problem, Cholesky& factor) {
     const ContactOptions final = problem.contact().options();
-    ContactOptions wide = final; // a body that grows pushes cloth along, the farther per step the wider
-    wide.body.distance = std::max(final.body.distance, grow_distance);
-    wide.body.stiffness *= final.body.distance / wide.body.distance;
-    problem.contact().set_options(wide);
+    problem.contact().set_options(while_growing(final));
     const std::vector<Triangle> cloth = node_triangles(run.garment);
     const Points normals = vertex_normals(run.body);
     TriMesh drawn = run.body;

@@ -4,13 +4,9 @@
 // A start of a level that contact can take: cloth that crosses neither itself nor the body. Internal to the
 // stages of a drape.
 
-#include "draping/contact/untangle.h"
 #include "draping/drape_run.h"
 
 namespace toile {
-
-/// The cloth of the level at work.
-TangledCloth tangled_cloth(const DrapeRun& run);
 
 /// Takes the cloth apart unless that would push it into the body; what then still crosses is left out of
 /// contact, and false returned.

@@ -24,10 +24,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double barrier_stiffness = 1e7; // Pa/m at a distance of half a millimetre
-constexpr double cloth_stiffness = 0.1;   // of the barrier, between cloth and cloth
-constexpr double floor_share = 0.1;       // of the contact distance that is never entered
-constexpr double grow_distance = 2e-3;    // m, contact distance while the body grows back
 constexpr int stuck_patience = 2;         // rounds that the body waits where cloth goes through the body and will be in the way
 constexpr double hold_stiffness = 3e3;    // Pa/m, of what draws every node to where it was
 constexpr double least_altitude = 0.1;    // of a triangle's longest side that its rest shape has
@@ -50,12 +46,6 @@ Fabric plain_sheet() {
     f.bend_poisson = 0.2;
     f.compression = 1;
     return f;
-}
-
-double mean_edge(const EdgeTable& edges, const Points& x) {
-    double sum = 0;
-    for (const auto& [a, b] : edges.ends) sum += (x[a] - x[b]).norm();
-    return edges.size() > 0 ? sum / edges.size() : 0;
 }
 
 /// Two sides of a triangle laid flat. Slivers are taken for wider than they are, or nothing could be reckoned with them.
@@ -190,35 +180,10 @@ struct Run {
         return f;
     }
 
-    ContactOptions contact_options() const {
-        ContactOptions c;
-        c.body.distance = options.clearance;
-        c.body.floor = floor_share * options.clearance;
-        c.body.stiffness = barrier_stiffness * (0.5e-3 / options.clearance);
-        c.cloth = c.body;
-        c.cloth.stiffness *= cloth_stiffness;
-        return c;
-    }
+    ContactOptions contact_options() const { return barriers_at(options.clearance, fabrics[0].density); }
 };
 
-TangledCloth tangled_cloth(const Garment& g, const Points& x) {
-    ContactCloth cloth = contact_cloth(g);
-    return {std::move(cloth.triangles), g.edges, mean_edge(g.edges, x), std::move(cloth.sewn_to_edge)};
-}
-
 // ---- cloth that crosses itself
-
-/// Whether in the end nothing crosses and nothing is nearer than the floor.
-bool take_apart(Run& run, Contact& contact, Points& x, UntangleOptions how) {
-    how.go_on = [&] { return run.tell("untangle", std::numeric_limits<double>::infinity()); };
-    for (int round = 0; round < 10 && !run.stopped; ++round) {
-        const Untangled u = untangle(run.tangled, x, how);
-        run.taken_apart = std::max(run.taken_apart, u.before);
-        if (u.after > 0) return false;
-        if (contact.widen(x) == 0 && find_crossings(run.tangled, x).empty()) return true;
-    }
-    return false;
-}
 
 /// Parts that have gone through go back as a whole; what has none is shortened, by large motions or by small ones. Each
 /// goes on from the best that those before it have reached.
@@ -230,8 +195,9 @@ void take_apart(Run& run, Points& x) {
     withdraw.withdraw = true;
     for (UntangleOptions how : {withdraw, UntangleOptions{0.4, 8}, UntangleOptions{0.1, 2}}) {
         how.patience = 60;
+        how.go_on = [&] { return run.tell("untangle", std::numeric_limits<double>::infinity()); };
         Points trial = x;
-        const bool apart = take_apart(run, contact, trial, how);
+        const bool apart = take_apart(run.tangled, contact, trial, how, run.taken_apart);
         const int left = int(find_crossings(run.tangled, trial).size());
         if (apart || left < least) x = trial;
         if (apart) return;
@@ -239,17 +205,10 @@ void take_apart(Run& run, Points& x) {
     }
 }
 
-/// Nodes of what still crosses or is too near: to be left out of contact with other cloth.
+/// Nodes to be left out of contact with other cloth.
 std::vector<char> tangle_of(const Run& run, const Points& x) {
-    std::vector<char> tangle(x.size(), 0);
-    for (const ClothCrossing& c : find_crossings(run.tangled, x)) {
-        for (const int i : run.garment.edges.ends[c.edge]) tangle[i] = 1;
-        for (const int i : run.garment.triangles[c.triangle]) tangle[i] = 1;
-    }
     Contact contact(contact_cloth(run.garment), {}, run.contact_options());
-    for (const ContactPair& p : contact.violations(x))
-        for (const int i : p.p) tangle[i] = 1;
-    return tangle;
+    return tangle_of(run.tangled, contact, x);
 }
 
 // ---- cloth in the body
@@ -384,10 +343,7 @@ void press_out(Run& run, Points& x, int rings) {
     const std::vector<char> free = free_nodes(run, x, tangle, rings);
     const Obstacle obstacle = draw_in(run, x);
     const ContactOptions final = run.contact_options();
-    ContactOptions wide = final; // a body that grows pushes cloth along, the farther per step the wider
-    wide.body.distance = std::max(final.body.distance, grow_distance);
-    wide.body.stiffness *= final.body.distance / wide.body.distance;
-    ClothProblem problem(run.garment, run.fabrics, obstacle.drawn, wide);
+    ClothProblem problem(run.garment, run.fabrics, obstacle.drawn, while_growing(final));
     problem.sheet().limits.clear();
     problem.contact().leave_out(tangle);
     for (int i = 0; i < run.garment.node_count; ++i)
@@ -464,7 +420,7 @@ Change change_of(const Garment& garment, const Points& before, const Points& aft
         c.largest = d;
         c.at = before[i];
     }
-    const double least = mean_edge(garment.edges, before) / 10;
+    const double least = mean_length(garment.edges, before) / 10;
     for (const auto& [a, b] : garment.edges.ends) {
         const double was = (before[a] - before[b]).norm(), is = (after[a] - after[b]).norm();
         if (was == is) continue;
@@ -483,7 +439,7 @@ UntangledGarment untangle_garment(const Garment& garment, const Points& x, const
     const Compact cloth = compact(surface);
     Garment rest = at_rest(cloth.mesh, cloth.stitches);
     Run run{.options = options, .garment = rest, .start = cloth.mesh.points, .body = solid_of(body),
-            .tangled = tangled_cloth(rest, cloth.mesh.points)};
+            .tangled = tangled_cloth(rest, mean_length(rest.edges, cloth.mesh.points))};
     run.best = run.start;
     run.best_faults = run.faults_of(run.start);
     if (run.best_faults.sum() > 0) untangle_all(run);

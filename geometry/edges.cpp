@@ -88,6 +88,12 @@ std::vector<int> pieces(const std::vector<Triangle>& triangles, int point_count)
     return sets.all();
 }
 
+double mean_length(const EdgeTable& edges, const Points& points) {
+    double sum = 0;
+    for (const auto& [a, b] : edges.ends) sum += (points[a] - points[b]).norm();
+    return edges.size() > 0 ? sum / edges.size() : 0;
+}
+
 int count_pieces(const std::vector<Triangle>& triangles, int point_count) {
     const std::vector<int> piece = pieces(triangles, point_count);
     std::vector<int> lowest;

@@ -21,6 +21,9 @@ struct EdgeTable {
 /// Throws std::invalid_argument when an index is out of range or a triangle names a point twice.
 EdgeTable make_edges(const std::vector<Triangle>& triangles, int point_count);
 
+/// Mean length of the edges, m; 0 without edges.
+double mean_length(const EdgeTable& edges, const Points& points);
+
 /// Number of connected pieces of the surface (two triangles are connected when they share a point).
 int count_pieces(const std::vector<Triangle>& triangles, int point_count);
 

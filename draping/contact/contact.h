@@ -20,6 +20,10 @@ struct ContactOptions {
     bool self = true; ///< contact of the cloth with itself
 };
 
+/// The barriers with which garments are draped: they act below `distance` (m), on cloth of `density` (kg/m2), and are as
+/// hard in all as the pressure at half a millimetre is; cloth presses on cloth more lightly than on a body.
+ContactOptions barriers_at(double distance, double density);
+
 /// The cloth as contact sees it.
 struct ContactCloth {
     std::vector<Triangle> triangles;       ///< over nodes

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double straight = 0.2; // length of the summed directions below which a contour counts as straight
 constexpr double flat_enough = 0.5; // length of the mean normal from which a contour lies in one sheet
+constexpr int most_rounds = 10; // of untangling and moving apart
 constexpr int more_rings = 3; // beyond a part's own depth to which the cloth before it comes along
 
 Vec3 normal_of(const Points& x, const Triangle& t) { return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]); }
@@ -344,6 +345,29 @@ Untangled untangle(const TangledCloth& cloth, Points& x, const UntangleOptions& 
         for (int k = 0; k < options.spread; ++k) step = averaged(cloth, step);
         for (std::size_t i = 0; i < x.size(); ++i) x[i] += step[i];
     }
+}
+
+bool take_apart(const TangledCloth& cloth, Contact& contact, Points& x, const UntangleOptions& options, int& most) {
+    for (int round = 0; round < most_rounds && (!options.go_on || options.go_on()); ++round) {
+        const Untangled u = untangle(cloth, x, options);
+        most = std::max(most, u.before);
+        if (u.after > 0) return false;
+        if (contact.widen(x) == 0 && find_crossings(cloth, x).empty()) return true;
+    }
+    return false;
+}
+
+std::vector<char> tangle_of(const TangledCloth& cloth, Contact& contact, const Points& x) {
+    std::vector<char> tangle(x.size(), 0);
+    for (const ClothCrossing& c : find_crossings(cloth, x)) {
+        for (const int i : cloth.edges.ends[c.edge]) tangle[i] = 1;
+        for (const int i : cloth.triangles[c.triangle]) tangle[i] = 1;
+    }
+    contact.leave_out({});
+    for (const ContactPair& p : contact.violations(x))
+        if (!p.with_body)
+            for (const int i : p.p) tangle[i] = 1;
+    return tangle;
 }
 
 } // namespace toile

@@ -5,6 +5,7 @@
 // Magnenat-Thalmann: Resolving Surface Collisions through Intersection Contour Minimization, 2006. It needs no
 // history and no idea of inside and outside, and pulls a contour that ends at a border out over the border.
 
+#include "draping/contact/contact.h"
 #include "geometry/bvh.h"
 #include "geometry/distance.h"
 #include "geometry/edges.h"
@@ -68,5 +69,13 @@ struct UntangleOptions {
 /// Moves the nodes of `x` near crossings until there are none, or the options end it; then x is the state of fewest
 /// crossings on the way.
 Untangled untangle(const TangledCloth& cloth, Points& x, const UntangleOptions& options = {});
+
+/// Untangles and moves what lies too near apart, by turns. Returns whether in the end nothing crosses and nothing is
+/// nearer than the floor of `contact`; `most` is raised to the crossings that there were.
+bool take_apart(const TangledCloth& cloth, Contact& contact, Points& x, const UntangleOptions& options, int& most);
+
+/// The nodes (1 each) of what crosses, or of cloth that is too near to cloth for `contact`, whose nodes that were left
+/// out are let in.
+std::vector<char> tangle_of(const TangledCloth& cloth, Contact& contact, const Points& x);
 
 } // namespace toile

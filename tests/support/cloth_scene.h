@@ -13,15 +13,6 @@
 
 namespace toile::test {
 
-/// The barrier of a drape's last level at a clearance of half a millimetre.
-inline ContactOptions drape_contact(const Fabric& fabric) {
-    ContactOptions o;
-    o.body = {0.5e-3, 0.5e-4, 1e7 * fabric.density / 0.15};
-    o.cloth = o.body;
-    o.cloth.stiffness *= 0.1;
-    return o;
-}
-
 /// Adds a copy of a mesh; its points are moved apart in the plane, which contact in space does not see.
 inline void add_sheet(FlatMesh& all, const FlatMesh& sheet, double aside) {
     const int first = int(all.points.size());
@@ -39,7 +30,7 @@ struct ClothScene {
 
     ClothScene(Garment g, TriMesh on, Points start, const Fabric& fabric, double friction)
         : garment(std::move(g)), body(std::move(on)), x(std::move(start)),
-          problem(std::make_unique<ClothProblem>(garment, PanelFabrics{fabric}, body, drape_contact(fabric))) {
+          problem(std::make_unique<ClothProblem>(garment, PanelFabrics{fabric}, body, barriers_at(0.5e-3, fabric.density))) {
         problem->gravity = 9.81;
         problem->rest_here(x, friction);
     }

@@ -6,19 +6,11 @@
 #include "draping/cloth.h"
 #include "draping/solve/step.h"
 #include "tests/support/flat_mesh.h"
+#include "tests/support/plain_fabric.h"
 
 namespace toile::test {
 
-inline Fabric cotton() {
-    Fabric f;
-    f.name = "cotton";
-    f.density = 0.15;
-    f.stretch_warp = f.stretch_weft = 1000;
-    f.shear = 50;
-    f.bend_warp = f.bend_weft = 1e-5;
-    f.bend_twist = 0.5e-5;
-    return f;
-}
+inline Fabric cotton() { return plain_fabric(1000, 1e-5); }
 
 /// Cloth without contact of its own, and a response.
 struct DroppedSheet {

@@ -10,6 +10,7 @@
 #include "draping/solve/settle.h"
 
 #include "tests/support/flat_mesh.h"
+#include "tests/support/plain_fabric.h"
 
 #include <catch2/catch.hpp>
 
@@ -24,17 +25,6 @@ constexpr double pi = std::numbers::pi;
 constexpr double radius = 0.05, width = 0.012, tail = 0.03; // m
 constexpr double above = 0.45e-3;                           // m, from the cylinder to the strip
 constexpr double edge = 0.003;                              // m
-
-Fabric sheet() {
-    Fabric f;
-    f.name = "sheet";
-    f.density = 0.15;
-    f.stretch_warp = f.stretch_weft = 2000;
-    f.shear = 50;
-    f.bend_warp = f.bend_weft = 1e-5;
-    f.bend_twist = 0.5e-5;
-    return f;
-}
 
 TriMesh cylinder(int facets) {
     TriMesh mesh;
@@ -87,7 +77,7 @@ Pulled pull(double friction, double tension) {
     ContactOptions contact;
     contact.body = contact.cloth = {0.5e-3, 0.5e-4, 1e7};
     contact.self = false;
-    ClothProblem problem(garment, {sheet()}, cylinder(120), contact);
+    ClothProblem problem(garment, {plain_fabric(2000, 1e-5)}, cylinder(120), contact);
     for (std::size_t k = 0; k < end[0].size(); ++k)
         problem.hooks.push_back({end[0][k], x[end[0][k]] - Vec3(0, 0.1, 0), Vec3::UnitY(), 1e3,
                                  tension * width * share[0][k] / parts});

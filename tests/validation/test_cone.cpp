@@ -7,6 +7,7 @@
 #include "draping/solve/settle.h"
 
 #include "tests/support/flat_mesh.h"
+#include "tests/support/plain_fabric.h"
 
 #include <catch2/catch.hpp>
 
@@ -23,14 +24,9 @@ constexpr double pi = std::numbers::pi;
 constexpr double inner = 0.05, outer = 0.2; // m, the tip is cut off: no sheet of paper has one
 
 Fabric paper() {
-    Fabric f;
-    f.name = "paper";
-    f.density = 0.15;
-    f.stretch_warp = f.stretch_weft = 2000;
+    Fabric f = plain_fabric(2000, 1e-5);
     f.shear = 1000;
     f.compression = 1;
-    f.bend_warp = f.bend_weft = 1e-5;
-    f.bend_twist = 0.5e-5;
     return f;
 }
 

@@ -5,6 +5,7 @@
 #include "draping/solve/settle.h"
 
 #include "tests/support/flat_mesh.h"
+#include "tests/support/plain_fabric.h"
 #include "tests/support/shapes.h"
 
 #include <catch2/catch.hpp>
@@ -19,17 +20,6 @@ using namespace toile::test;
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-
-Fabric sheet(double bend) {
-    Fabric f;
-    f.name = "sheet";
-    f.density = 0.15;
-    f.stretch_warp = f.stretch_weft = 2000;
-    f.shear = 50;
-    f.bend_warp = f.bend_weft = bend;
-    f.bend_twist = bend / 2;
-    return f;
-}
 
 ContactOptions barriers() {
     ContactOptions o;
@@ -70,7 +60,7 @@ Slide slide(double friction, double angle, double bend, TriMesh board) {
     SettleOptions options;
     options.tolerance = 1e-5;
     Cholesky factor;
-    ClothProblem level(garment, {sheet(bend)}, board, barriers());
+    ClothProblem level(garment, {plain_fabric(2000, bend)}, board, barriers());
     level.gravity = 9.81;
     level.rest_here(x, 1);
     REQUIRE(settle(level, x, factor, options).end == SettleEnd::settled);
@@ -78,7 +68,7 @@ Slide slide(double friction, double angle, double bend, TriMesh board) {
     x = turned(x, angle);
     board.points = turned(board.points, angle);
     const Points start = x;
-    ClothProblem tilted(garment, {sheet(bend)}, board, barriers());
+    ClothProblem tilted(garment, {plain_fabric(2000, bend)}, board, barriers());
     tilted.gravity = 9.81;
     tilted.rest_here(x, friction);
     Slide s;

@@ -9,6 +9,7 @@
 #include "draping/cloth.h"
 #include "draping/solve/settle.h"
 
+#include "tests/support/plain_fabric.h"
 #include "tests/support/plates.h"
 #include "tests/support/shapes.h"
 
@@ -29,14 +30,10 @@ struct Scene {
 };
 
 Fabric strip(double weight) {
-    Fabric f;
-    f.name = "strip";
-    f.density = 0.15;
-    f.stretch_warp = f.stretch_weft = 2e5;
+    constexpr double density = 0.15;
+    Fabric f = plain_fabric(2e5, weight > 0 ? density * 9.81 * std::pow(length, 3) / weight : 0.15);
     f.shear = 1e5;
     f.compression = 1;
-    f.bend_warp = f.bend_weft = weight > 0 ? f.density * 9.81 * std::pow(length, 3) / weight : 0.15;
-    f.bend_twist = f.bend_warp / 2;
     return f;
 }
 

@@ -4,6 +4,7 @@
 #include "draping/hooks.h"
 #include "draping/respond.h"
 #include "draping/take_apart.h"
+#include "draping/untangle_garment.h"
 #include "draping/where.h"
 #include "geometry/text.h"
 
@@ -36,6 +37,17 @@ void soften(const DrapeRun& run, ClothProblem& problem, double softness) {
     problem.sheet().softness = softness;
     problem.elastics = elastic_segments(run.staging, run.garment);
     for (ElasticSegment& s : problem.elastics) s.stiffness *= softness;
+}
+
+/// Takes the cloth apart without regard to its pattern: the body gives way meanwhile, and parts go back as a whole.
+/// Returns whether that undid it; the cloth stays as it is otherwise.
+bool untangle_as_mesh(DrapeRun& run) {
+    UntangleGarmentOptions o;
+    o.clearance = run.contact_options().body.distance;
+    o.progress = [&run](const DrapeProgress& p) { return run.tell(p.done, p.residual); };
+    const UntangledGarment u = untangle_garment(run.garment, run.x, run.body, o);
+    if (u.status == UntangleStatus::clear) run.x = u.x;
+    return u.status == UntangleStatus::clear;
 }
 
 void note_release(DrapeRun& run) {
@@ -209,6 +221,7 @@ void settle_level(DrapeRun& run) {
             run.settle_some(problem, run.x, factor, some);
             untangle();
         }
+        if (tangled && last_pass && !run.stopped && untangle_as_mesh(run)) untangle();
         if (last_pass && run.last_level()) o.progress = [&tight](int i, double) { return !tight.gives_up(i); };
         r = run.settle_some(problem, run.x, factor, o);
         if (last_pass && run.last_level()) r = settle_within_limits(run, problem, factor, o, r);

@@ -145,6 +145,10 @@ std::vector<std::string> decisions(const DrapeFacts& f, const Garment& g, const 
     if (f.untangled > 0)
         out.push_back(text("where cloth crossed itself after sewing or on a finer mesh, it was taken apart before contact "
                            "took over: at most %d crossings on a level", f.untangled));
+    if (f.untangled_as_mesh > 0)
+        out.push_back(text("cloth that stayed tangled while it settled was taken apart without regard to its pattern on %d "
+                           "of the levels, and settled again",
+                           f.untangled_as_mesh));
     for (const HookFacts& h : f.hooks)
         out.push_back(hook_sentence(h));
     if (f.hooks.empty())

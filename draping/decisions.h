@@ -40,6 +40,7 @@ struct DrapeFacts {
     std::vector<double> drawn_in;    ///< m, per level: how far the body was drawn in before it grew back
     std::vector<double> edge_lengths; ///< m, per level
     int untangled = 0;               ///< crossings of edges and triangles of cloth that were taken apart
+    int untangled_as_mesh = 0;       ///< levels on which the rest was taken apart as a mesh
     int pins = 0;                    ///< nodes held
     int band_segments = 0;           ///< of elastics
     double band_length = 0, band_rest = 0; ///< m, of all elastics at the end and relaxed

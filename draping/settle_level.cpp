@@ -46,8 +46,10 @@ bool untangle_as_mesh(DrapeRun& run) {
     o.clearance = run.contact_options().body.distance;
     o.progress = [&run](const DrapeProgress& p) { return run.tell(p.done, p.residual); };
     const UntangledGarment u = untangle_garment(run.garment, run.x, run.body, o);
-    if (u.status == UntangleStatus::clear) run.x = u.x;
-    return u.status == UntangleStatus::clear;
+    if (u.status != UntangleStatus::clear) return false;
+    run.x = u.x;
+    ++run.facts.untangled_as_mesh;
+    return true;
 }
 
 void note_release(DrapeRun& run) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Real garments from file to files, as a table: bench_drape 20mm [name ...]. Patterns, bodies and fabrics are those
-// of garmentcode/MANIFEST.tsv in the folder that TOILE_TEST_DATA names; without names, all that are to be draped.
+// of garmentcode/MANIFEST.tsv in the folder that TOILE_TEST_DATA names, then those of garmentcode_2021; without names, all that are to be draped.
 #include "bench/manifest.h"
 #include "src/quantity.h"
 #include "src/pipeline.h"
@@ -62,7 +62,10 @@ int main(int count, char** words) {
     std::printf("| garment | body, fabric | vertices | iterations by level | factorisations | s | CPU s | status | residual | "
                 "warp, weft max %% | compressed %% | clearance mm | crossings | MB |\n"
                 "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");
-    for (const ManifestEntry& e : read_manifest(data)) {
+    std::vector<ManifestEntry> entries = read_manifest(data);
+    const std::vector<ManifestEntry> older = patterns_of_2021(data);
+    entries.insert(entries.end(), older.begin(), older.end());
+    for (const ManifestEntry& e : entries) {
         const bool chosen = std::find(names.begin(), names.end(), e.name) != names.end();
         if (names.empty() ? e.expect != "refused" : chosen) drape_one(e, data, parse_length(words[1]));
     }

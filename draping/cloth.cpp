@@ -70,16 +70,9 @@ std::vector<double> node_masses(const Garment& g, const PanelFabrics& fabrics) {
 
 ClothProblem::ClothProblem(const Garment& garment, const PanelFabrics& fabrics, const TriMesh& body,
                            const ContactOptions& contact)
-    : sheet_(make_sheet(garment, fabrics)), contact_(contact_cloth(garment), body, contact),
-      node_mass_(node_masses(garment, fabrics)), pinned_(garment.node_count, 0) {
+    : NodeProblem(node_masses(garment, fabrics)), sheet_(make_sheet(garment, fabrics)),
+      contact_(contact_cloth(garment), body, contact) {
     limits_.swap(sheet_.limits);
-    mass_.resize(3 * garment.node_count);
-    double sum = 0;
-    for (int i = 0; i < garment.node_count; ++i) {
-        mass_.segment<3>(3 * i).setConstant(node_mass_[i]);
-        sum += node_mass_[i];
-    }
-    least_weight_ = 0.1 * sum / garment.node_count;
 }
 
 void ClothProblem::rest_here(const Points& x, double coefficient, bool at_rest) {
@@ -168,9 +161,7 @@ void ClothProblem::arrive(const Points& x) {
 }
 
 double ClothProblem::value(const Points& x) {
-    double sum = sheet_value(sheet_, x) + toile::value(stitches, x) + toile::value(hooks, x) +
-                 toile::value(elastics, x);
-    for (int i = 0; i < points(); ++i) sum += node_mass_[i] * gravity * x[i].y();
+    double sum = sheet_value(sheet_, x) + toile::value(*this, node_mass_, x);
     if (friction.coefficient > 0) sum += toile::value(friction, x);
     return sum + contact_.value(contact_.active(x));
 }
@@ -181,21 +172,16 @@ void ClothProblem::gradient_with(const std::vector<ActivePair>& active, const Po
     Points sheet(x.size(), Vec3::Zero());
     sheet_gradient(sheet_, x, sheet);
     g = flat(sheet);
-    add_gradient(stitches, x, g);
-    add_gradient(hooks, x, g);
-    add_gradient(elastics, x, g);
-    for (int i = 0; i < points(); ++i) g[3 * i + 1] += node_mass_[i] * gravity;
+    add_gradient(*this, node_mass_, x, g);
     if (friction.coefficient > 0) add_gradient(friction, x, g);
     contact_.add_gradient(active, g);
-    for (int i = 0; i < points(); ++i)
-        if (pinned_[i]) g.segment<3>(3 * i).setZero();
+    clear_pinned(g);
 }
 
 void ClothProblem::make_pattern() {
     std::vector<std::pair<int, int>> pairs;
     sheet_couplings(sheet_, pairs);
-    couplings(stitches, pairs);
-    couplings(elastics, pairs);
+    couplings(*this, pairs);
     contact_.couplings(active_, pairs);
     matrix_ = BlockMatrix(points(), pairs);
     sheet_slots(sheet_, matrix_);
@@ -213,9 +199,7 @@ BlockMatrix& ClothProblem::hessian(const Points& x, bool exact, bool& pattern_ch
         matrix_made_ = false;
     }
     sheet_hessian(sheet_, x, exact ? HessianKind::exact : HessianKind::projected, matrix_);
-    add_hessian(stitches, x, matrix_);
-    add_hessian(hooks, x, matrix_);
-    add_hessian(elastics, x, matrix_);
+    add_hessian(*this, x, matrix_);
     if (friction.coefficient > 0) add_hessian(friction, x, exact, matrix_);
     return matrix_;
 }
@@ -241,24 +225,14 @@ double ClothProblem::feasible_step(const Points& x, const Eigen::VectorXd& dx, s
     return contact_.feasible_step(x, dx, nullptr, shares ? &blocking_ : nullptr, shares);
 }
 
+double ClothProblem::unanswered(const Points& x, int i) const {
+    if (friction.coefficient == 0) return 0;
+    return std::max(0.0, friction_force(friction, x, i).norm() - friction.coefficient * normal_[i].norm());
+}
+
 double ClothProblem::residual(const Points& x, const Eigen::VectorXd& g) {
-    Points normal;
-    if (friction.coefficient > 0) normal = contact_.body_forces(active_);
-    double worst = 0;
-    for (int i = 0; i < points(); ++i) {
-        if (pinned_[i]) continue;
-        double force = g.segment<3>(3 * i).norm();
-        if (friction.coefficient > 0) {
-            const double limit = friction.coefficient * normal[i].norm();
-            force += std::max(0.0, friction_force(friction, x, i).norm() - limit);
-        }
-        const double r = force / (9.81 * std::max(node_mass_[i], least_weight_));
-        if (r > worst) {
-            worst = r;
-            worst_ = i;
-        }
-    }
-    return residual_ = worst;
+    if (friction.coefficient > 0) normal_ = contact_.body_forces(active_);
+    return residual_ = NodeProblem::residual(x, g);
 }
 
 } // namespace toile

@@ -6,11 +6,9 @@
 #include "draping/contact/contact.h"
 #include "draping/contact/friction.h"
 #include "draping/contact/untangle.h"
-#include "draping/energy/elastic.h"
 #include "draping/energy/sheet.h"
-#include "draping/energy/spring.h"
 #include "draping/measure.h"
-#include "draping/solve/problem.h"
+#include "draping/solve/node_problem.h"
 
 #include <memory>
 
@@ -25,23 +23,16 @@ TangledCloth tangled_cloth(const Garment& garment, double edge_length);
 /// kg per node.
 std::vector<double> node_masses(const Garment& garment, const PanelFabrics& fabrics);
 
-class ClothProblem final : public Problem {
+class ClothProblem final : public NodeProblem {
 public:
     ClothProblem(const Garment& garment, const PanelFabrics& fabrics, const TriMesh& body,
                  const ContactOptions& contact);
 
-    // What acts beside the sheet itself; changed between solves.
-    double gravity = 0; ///< m/s2 along -y
-    std::vector<StitchSpring> stitches;
-    std::vector<HookSpring> hooks;
-    std::vector<ElasticSegment> elastics;
     Friction friction;  ///< coefficient 0: none
-    void pin(int node) { pinned_[node] = 1; }
 
     Sheet& sheet() { return sheet_; }
     Contact& contact() { return contact_; }
     const Contact& contact() const { return contact_; }
-    const std::vector<double>& node_mass() const { return node_mass_; }
 
     /// Every touching or later touching node is tied by friction to where it is now. If x is a state at rest,
     /// friction is at once what holds it there; otherwise it follows contact slowly.
@@ -53,14 +44,11 @@ public:
     /// The triangles at or beyond a limit of their fabric.
     std::vector<int> beyond_limits(const Points& x) const { return beyond_strain_limits(limits_, x); }
 
-    /// The residual of `residual()` by node, and the node at which it is largest.
-    int worst_node() const { return worst_; }
     int blocking_pair() const { return blocking_; } ///< -1: none limited the last step asked for with shares
 
     /// Finds the pairs that act at x, on which gradient() and hessian() stand; what is lagged stays as it is.
     void touch(const Points& x);
 
-    int points() const override { return int(node_mass_.size()); }
     void arrive(const Points& x) override;
     double value(const Points& x) override;
     void gradient(const Points& x, Eigen::VectorXd& g) override;
@@ -70,10 +58,10 @@ public:
                          Eigen::VectorXd& hd) override;
     double feasible_step(const Points& x, const Eigen::VectorXd& dx, std::vector<double>* shares = nullptr) override;
     double residual(const Points& x, const Eigen::VectorXd& g) override;
-    const Eigen::VectorXd& mass() const override { return mass_; }
-    const std::vector<char>& pinned() const override { return pinned_; }
 
 private:
+    double unanswered(const Points& x, int i) const override;
+
     void make_pattern();
     void gradient_with(const std::vector<ActivePair>& active, const Points& x, Eigen::VectorXd& g) const;
     void renew_friction(const Points& x);
@@ -82,10 +70,6 @@ private:
 
     Sheet sheet_;
     Contact contact_;
-    std::vector<double> node_mass_;
-    Eigen::VectorXd mass_;
-    std::vector<char> pinned_;
-    double least_weight_ = 0; ///< a tenth of the mean node's mass
     std::vector<ActivePair> active_; ///< at the state of the last arrive()
     BlockMatrix matrix_;
     bool matrix_made_ = false;
@@ -95,7 +79,8 @@ private:
     bool trusted_ = false;           ///< the contact forces of the next arrival are those of a state at rest
     bool rising_ = false;            ///< some node's friction has yet to catch up with its normal force
     double residual_ = 0, renewed_at_ = 0;
-    int worst_ = 0, blocking_ = -1;
+    Points normal_; ///< forces of the body in the last residual(), where friction acts
+    int blocking_ = -1;
 };
 
 } // namespace toile

@@ -37,16 +37,13 @@ ResponseOptions response_options(const DrapeRun& run, const ClothProblem& proble
 
 LevelInMotion::LevelInMotion(const DrapeRun& run)
     : problem(run.garment, run.level_fabrics(), {}, no_contact),
-      response(make_response(run.options.contact, contact_cloth(run.garment), run.body, response_options(run, problem))) {
+      response(make_response(run.options.contact, contact_cloth(run.garment), run.body, response_options(run, problem))),
+      stepper(problem, *response, {time_step, damping, std::min(most_motion, run.edge_length())}) {
     cloth.x = run.x;
-    step.time_step = time_step;
-    step.damping = damping;
-    step.max_motion = std::min(most_motion, run.edge_length());
 }
 
 RestResult LevelInMotion::rest(DrapeRun& run, double tolerance, int max_steps, bool last) {
     RestOptions o;
-    o.step = step;
     o.tolerance = tolerance;
     o.speed = last ? rest_speed : passing_speed;
     o.max_steps = std::min(max_steps, run.iterations_left);
@@ -55,7 +52,7 @@ RestResult LevelInMotion::rest(DrapeRun& run, double tolerance, int max_steps, b
         const double within = (base - from) / std::max(span, 1e-9);
         return run.tell(within + (1 - within) * (1 - std::exp(-i / 500.0)), r);
     };
-    const RestResult r = come_to_rest(problem, *response, cloth, factor, o);
+    const RestResult r = come_to_rest(stepper, cloth, response->body(), o);
     run.x = cloth.x;
     run.result.residual = r.residual;
     run.iterations_left -= r.steps;

@@ -4,7 +4,7 @@
 // A level brought to rest by a response instead of the barrier: damped motion. Internal to the stages of a drape.
 
 #include "draping/drape_run.h"
-#include "draping/solve/step.h"
+#include "draping/solve/implicit.h"
 
 namespace toile {
 
@@ -13,9 +13,8 @@ namespace toile {
 struct LevelInMotion {
     ClothProblem problem;
     std::unique_ptr<Response> response;
+    ImplicitStepper stepper;
     Moving cloth;
-    Cholesky factor;
-    StepOptions step;
 
     explicit LevelInMotion(const DrapeRun& run);
 

@@ -249,7 +249,7 @@ void settle_level(DrapeRun& run) {
         else
             run.result.status = DrapeStatus::stalled;
         if (run.result.status != DrapeStatus::converged) {
-            if (motion) residual(acting, motion->cloth); // tells which node is worst
+            if (motion) motion->stepper.residual(motion->cloth); // tells which node is worst
             note_where(run, problem, r.end, acting.worst_node());
             if (motion && !at_rest)
                 run.result.where += text("; not at rest after %d steps, at %.2g m/s", run.result.levels.back().iterations,

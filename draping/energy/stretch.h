@@ -3,6 +3,7 @@
 
 // The membrane: orthotropic, slack under compression, not locked by bending.
 
+#include "draping/energy/energy.h"
 #include "draping/energy/patch.h"
 #include "draping/fabric/fabric.h"
 
@@ -33,8 +34,6 @@ struct StretchElement {
 /// Block of 3 patch.count rows and columns.
 using StretchHessian =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3 * Patch::max_nodes, 3 * Patch::max_nodes>;
-
-enum class HessianKind { exact, projected };
 
 /// `fabrics` has one entry per panel. Throws std::invalid_argument for a fabric whose stiffness is not
 /// positive definite.

@@ -4,7 +4,7 @@
 // A square sheet of cotton that moves under gravity and meets a body.
 
 #include "draping/cloth.h"
-#include "draping/solve/step.h"
+#include "draping/solve/implicit.h"
 #include "tests/support/flat_mesh.h"
 #include "tests/support/plain_fabric.h"
 
@@ -18,16 +18,18 @@ struct DroppedSheet {
     Moving cloth;
     ClothProblem problem;
     std::unique_ptr<Response> response;
-    Cholesky factor;
-    StepOptions options;
+    ImplicitStepper stepper;
+    StepOptions& options = stepper.options();
 
     /// Horizontal, its middle at `middle`.
     DroppedSheet(double side, double edge, const Vec3& middle, const TriMesh& body, ContactResponse kind,
                  const ResponseOptions& how = {})
         : DroppedSheet(jittered_rectangle(side, side, edge, 0.25, 7), side, middle, body, kind, how) {}
 
+    DroppedSheet(const DroppedSheet&) = delete; // the stepper refers to the rest
+
     ResponseDone step_on(const Points& body_end) {
-        return step(problem, *response, cloth, body_end, factor, options);
+        return stepper.step(cloth, body_end);
     }
     ResponseDone step_on() { return step_on(Points(response->body())); }
 
@@ -39,7 +41,7 @@ private:
     DroppedSheet(const FlatMesh& mesh, double side, const Vec3& middle, const TriMesh& body, ContactResponse kind,
                  const ResponseOptions& how)
         : garment(garment_of(mesh)), problem(garment, {cotton()}, {}, {{1, 0, 0}, {1, 0, 0}, false}),
-          response(make_response(kind, contact_cloth(garment), body, how)) {
+          response(make_response(kind, contact_cloth(garment), body, how)), stepper(problem, *response) {
         for (const Vec2& p : mesh.points) cloth.x.push_back(middle + Vec3(p.x() - side / 2, 0, side / 2 - p.y()));
         problem.gravity = 9.81;
     }

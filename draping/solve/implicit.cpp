@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "draping/solve/step.h"
+#include "draping/solve/implicit.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,11 +37,13 @@ bool cut_to_cone(Touch& t, double coefficient) {
 }
 
 struct Step {
-    Problem& problem;
+    NodeProblem& problem;
     Response& response;
     Moving& cloth;
     const Points& body_end;
     Cholesky& factor;
+    bool& analysed;
+    int& factorisations;
     const StepOptions& options;
 
     int n = problem.points();
@@ -71,10 +73,11 @@ struct Step {
         problem.gradient(cloth.x, g);
         bool pattern_changed = false;
         BlockMatrix& a = problem.hessian(cloth.x, false, pattern_changed);
-        if (!cloth.analysed || pattern_changed) factor.analyse(a, cloth.analysed);
-        cloth.analysed = true;
+        if (!analysed || pattern_changed) factor.analyse(a, analysed);
+        analysed = true;
         // All by dt2: the second derivative as the problem has it.
         a.add_to_diagonal((1 + options.damping * dt) / (dt * dt) * problem.mass());
+        problem.add_damping_matrix(cloth.x, 1 / dt, a);
         VectorXd momentum = problem.mass().cwiseProduct(flat(cloth.velocity)) - dt * g;
         for (int i = 0; i < n; ++i) momentum.segment<3>(3 * i) += dt * cloth.other_force[i];
         find_holds(a);
@@ -86,7 +89,7 @@ struct Step {
             for (int i = 0; i < n; ++i)
                 if (pinned(i)) b.segment<3>(3 * i).setZero();
             held.pin(problem.pinned());
-            ++cloth.factorisations;
+            ++factorisations;
             if (!factor.factorise(held)) throw std::runtime_error("the motion of the cloth has no finite stiffness");
             VectorXd solution;
             factor.solve(b / (dt * dt), solution);
@@ -182,14 +185,6 @@ struct Step {
         return false;
     }
 
-    void slow(Points& v) const {
-        for (Vec3& u : v) {
-            const double far = dt * u.norm();
-            if (!std::isfinite(far)) throw std::runtime_error("the motion of the cloth is no longer finite");
-            if (far > options.max_motion) u *= options.max_motion / far;
-        }
-    }
-
     /// Adds what the response did to what held the cloth already. A touch lasts while its pair is near, a weld until
     /// it pulls.
     void take_up(const ResponseDone& done, const Points& v) {
@@ -227,45 +222,42 @@ struct Step {
 
 } // namespace
 
-Points Moving::contact_force() const {
-    Points force = other_force;
-    for (const HeldTouch& h : touches)
-        for (int k = 0; k < 4; ++k)
-            if (h.touch.point[k] < int(x.size())) force[h.touch.point[k]] += h.touch.weight[k] * h.touch.force;
-    return force;
-}
+ImplicitStepper::ImplicitStepper(NodeProblem& problem, Response& response, const StepOptions& options)
+    : problem_(problem), response_(response), options_(options) {}
 
-ResponseDone step(Problem& problem, Response& response, Moving& cloth, const Points& body_end, Cholesky& factor,
-                  const StepOptions& options) {
+ResponseDone ImplicitStepper::step(Moving& cloth, const Points& body_end) {
     const std::size_t n = cloth.x.size();
+    const double dt = options_.time_step;
     cloth.velocity.resize(n, Vec3::Zero());
     cloth.other_force.resize(n, Vec3::Zero());
-    Step one{problem, response, cloth, body_end, factor, options};
+    Step one{problem_, response_, cloth, body_end, factor_, analysed_, factorisations_, options_};
     std::vector<double> inverse_mass(n, 0.0);
     for (std::size_t i = 0; i < n; ++i)
-        if (!problem.pinned()[i]) inverse_mass[i] = 1 / one.mass(int(i));
-    const ResponseStep seen{options.time_step, cloth.x, cloth.velocity, inverse_mass, body_end};
+        if (!problem_.pinned()[i]) inverse_mass[i] = 1 / one.mass(int(i));
+    const ResponseStep seen{dt, cloth.x, cloth.velocity, inverse_mass, body_end};
     ResponseDone done;
     Points v = cloth.velocity;
-    if (response.known_at_start()) {
-        done = response.respond(seen, v);
+    if (response_.known_at_start()) {
+        done = response_.respond(seen, v);
         one.take_up(done, v);
         v = one.candidate();
-        one.slow(v);
+        slow(v, dt, options_.max_motion);
     } else {
         v = one.candidate();
         for (std::size_t i = 0; i < n; ++i) // what the response is to do anew
-            v[i] -= options.time_step * inverse_mass[i] * cloth.other_force[i];
-        one.slow(v);
-        done = response.respond(seen, v);
+            v[i] -= dt * inverse_mass[i] * cloth.other_force[i];
+        slow(v, dt, options_.max_motion);
+        done = response_.respond(seen, v);
         one.take_up(done, v);
     }
-    for (std::size_t i = 0; i < n; ++i) cloth.x[i] += options.time_step * v[i];
+    for (std::size_t i = 0; i < n; ++i) cloth.x[i] += dt * v[i];
     cloth.velocity = std::move(v);
     return done;
 }
 
-double residual(Problem& problem, const Moving& cloth) {
+double ImplicitStepper::residual(const Moving& cloth) { return toile::residual(problem_, cloth); }
+
+double residual(NodeProblem& problem, const Moving& cloth) {
     problem.arrive(cloth.x);
     VectorXd g;
     problem.gradient(cloth.x, g);
@@ -273,31 +265,6 @@ double residual(Problem& problem, const Moving& cloth) {
     for (int i = 0; i < problem.points(); ++i)
         if (!problem.pinned()[i]) g.segment<3>(3 * i) -= force[i];
     return problem.residual(cloth.x, g);
-}
-
-double kinetic_energy(const Problem& problem, const Moving& cloth) {
-    return 0.5 * flat(cloth.velocity).dot(problem.mass().cwiseProduct(flat(cloth.velocity)));
-}
-
-RestResult come_to_rest(Problem& problem, Response& response, Moving& cloth, Cholesky& factor,
-                        const RestOptions& options) {
-    RestResult r;
-    const Points body = response.body();
-    const int factorised = cloth.factorisations;
-    double mass = 0;
-    for (int i = 0; i < problem.points(); ++i) mass += problem.mass()[3 * i];
-    while (r.steps < options.max_steps) {
-        const ResponseDone done = step(problem, response, cloth, body, factor, options.step);
-        ++r.steps;
-        r.unresolved += done.unresolved > 0;
-        r.residual = residual(problem, cloth);
-        r.speed = std::sqrt(2 * kinetic_energy(problem, cloth) / mass);
-        r.rested = r.residual <= options.tolerance && r.speed <= options.speed;
-        r.stopped = options.progress && !options.progress(r.steps, r.residual);
-        if (r.rested || r.stopped) break;
-    }
-    r.factorisations = cloth.factorisations - factorised;
-    return r;
 }
 
 } // namespace toile

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// What every model of cloth is to a solver: an energy of the places of its nodes. A model may also lose energy when
+// it moves.
+
+#include "draping/algebra/block_matrix.h"
+
+namespace toile {
+
+enum class HessianKind { exact, projected };
+
+class Energy {
+public:
+    virtual ~Energy() = default;
+
+    virtual double value(const Points& x) const = 0; ///< J
+    virtual void add_gradient(const Points& x, Eigen::VectorXd& g) const = 0;
+    /// Blocks that add_hessian fills.
+    virtual void couplings(std::vector<std::pair<int, int>>& pairs) const = 0;
+    /// Exact, or positive semidefinite.
+    virtual void add_hessian(const Points& x, HessianKind kind, BlockMatrix& h) const = 0;
+
+    /// Adds the forces of internal friction, N, of nodes that move with the velocities `v` (m/s). None unless a model has any.
+    virtual void add_damping(const Points& x, const Points& v, Eigen::VectorXd& force) const {
+        (void)x, (void)v, (void)force;
+    }
+    /// Adds minus their derivative by the velocities, positive semidefinite, times `factor`; the blocks are those of the
+    /// Hessian.
+    virtual void add_damping_matrix(const Points& x, double factor, BlockMatrix& h) const {
+        (void)x, (void)factor, (void)h;
+    }
+};
+
+} // namespace toile

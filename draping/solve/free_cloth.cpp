@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/solve/free_cloth.h"
+
+namespace toile {
+
+double FreeCloth::value(const Points& x) { return energy_->value(x) + toile::value(*this, node_mass_, x); }
+
+void FreeCloth::gradient(const Points& x, Eigen::VectorXd& g) {
+    g.setZero(3 * points());
+    energy_->add_gradient(x, g);
+    toile::add_gradient(*this, node_mass_, x, g);
+    clear_pinned(g);
+}
+
+BlockMatrix& FreeCloth::hessian(const Points& x, bool exact, bool& pattern_changed) {
+    if (!matrix_made_) {
+        std::vector<std::pair<int, int>> pairs;
+        energy_->couplings(pairs);
+        couplings(*this, pairs);
+        matrix_ = BlockMatrix(points(), pairs);
+        matrix_made_ = pattern_changed = true;
+    }
+    matrix_.set_zero();
+    energy_->add_hessian(x, exact || !projected_ ? HessianKind::exact : HessianKind::projected, matrix_);
+    add_hessian(*this, x, matrix_);
+    return matrix_;
+}
+
+void FreeCloth::multiply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
+    matrix_.multiply(v, product);
+    for (int i = 0; i < points(); ++i)
+        if (pinned_[i]) product.segment<3>(3 * i) = v.segment<3>(3 * i);
+}
+
+void FreeCloth::curvature_along(const Points& x, const Eigen::VectorXd& g, const Eigen::VectorXd& d, Eigen::VectorXd& hd) {
+    constexpr double part = 1e-3; // of steps of millimetres
+    Points near = x;
+    flat(near) += part * d;
+    gradient(near, hd);
+    hd = (hd - g) / part;
+}
+
+double FreeCloth::feasible_step(const Points& x, const Eigen::VectorXd&, std::vector<double>* shares) {
+    if (shares) shares->assign(x.size(), 1.0);
+    return 1;
+}
+
+void FreeCloth::damping(const Points& x, const Points& v, Eigen::VectorXd& force) {
+    force.setZero(3 * points());
+    energy_->add_damping(x, v, force);
+}
+
+void FreeCloth::add_damping_matrix(const Points& x, double factor, BlockMatrix& h) {
+    energy_->add_damping_matrix(x, factor, h);
+}
+
+} // namespace toile

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "draping/energy/energy.h"
+#include "draping/solve/node_problem.h"
+
+#include <memory>
+
+namespace toile {
+
+/// Any model of cloth, with loads and pins and without contact of its own, as a problem for a stepper or for settle().
+class FreeCloth final : public NodeProblem {
+public:
+    /// `projected`: whether hessian() gives a positive semidefinite stand-in when it is not asked for the exact one.
+    FreeCloth(std::unique_ptr<Energy> energy, std::vector<double> node_mass, bool projected = true)
+        : NodeProblem(std::move(node_mass)), energy_(std::move(energy)), projected_(projected) {}
+
+    const Energy& energy() const { return *energy_; }
+
+    void arrive(const Points&) override {}
+    double value(const Points& x) override;
+    void gradient(const Points& x, Eigen::VectorXd& g) override;
+    BlockMatrix& hessian(const Points& x, bool exact, bool& pattern_changed) override;
+    void multiply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const override;
+    void curvature_along(const Points& x, const Eigen::VectorXd& g, const Eigen::VectorXd& d,
+                         Eigen::VectorXd& hd) override;
+    double feasible_step(const Points&, const Eigen::VectorXd&, std::vector<double>* shares = nullptr) override;
+    void damping(const Points& x, const Points& v, Eigen::VectorXd& force) override;
+    void add_damping_matrix(const Points& x, double factor, BlockMatrix& h) override;
+
+private:
+    std::unique_ptr<Energy> energy_;
+    bool projected_;
+    BlockMatrix matrix_;
+    bool matrix_made_ = false;
+};
+
+} // namespace toile

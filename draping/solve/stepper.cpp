@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/solve/stepper.h"
+
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace toile {
+
+Points Moving::contact_force() const {
+    Points force = other_force;
+    force.resize(x.size(), Vec3::Zero());
+    for (const HeldTouch& h : touches)
+        for (int k = 0; k < 4; ++k)
+            if (h.touch.point[k] < int(x.size())) force[h.touch.point[k]] += h.touch.weight[k] * h.touch.force;
+    return force;
+}
+
+double kinetic_energy(const std::vector<double>& node_mass, const Moving& cloth) {
+    double sum = 0;
+    for (std::size_t i = 0; i < cloth.velocity.size(); ++i) sum += 0.5 * node_mass[i] * cloth.velocity[i].squaredNorm();
+    return sum;
+}
+
+void slow(Points& v, double dt, double max_motion) {
+    for (Vec3& u : v) {
+        const double far = dt * u.norm();
+        if (!std::isfinite(far)) throw std::runtime_error("the motion of the cloth is no longer finite");
+        if (far > max_motion) u *= max_motion / far;
+    }
+}
+
+ResponseDone go(Moving& cloth, Response& response, const std::vector<double>& inverse_mass, const Points& body_end,
+                const StepOptions& options, Points v) {
+    const double dt = options.time_step;
+    cloth.velocity.resize(cloth.x.size(), Vec3::Zero());
+    slow(v, dt, options.max_motion);
+    ResponseDone done = response.respond({dt, cloth.x, cloth.velocity, inverse_mass, body_end}, v);
+    cloth.touches.clear();
+    for (const Touch& t : done.touches) cloth.touches.push_back({t});
+    cloth.other_force = done.other_force;
+    for (std::size_t i = 0; i < cloth.x.size(); ++i) cloth.x[i] += dt * v[i];
+    cloth.velocity = std::move(v);
+    return done;
+}
+
+RestResult come_to_rest(Stepper& stepper, Moving& cloth, const Points& body, const RestOptions& options) {
+    RestResult r;
+    const int factorised = stepper.factorisations();
+    const std::vector<double>& mass = stepper.node_mass();
+    const double all = std::accumulate(mass.begin(), mass.end(), 0.0);
+    while (r.steps < options.max_steps) {
+        const ResponseDone done = stepper.step(cloth, body);
+        ++r.steps;
+        r.unresolved += done.unresolved > 0;
+        r.residual = stepper.residual(cloth);
+        r.speed = std::sqrt(2 * kinetic_energy(mass, cloth) / all);
+        r.rested = r.residual <= options.tolerance && r.speed <= options.speed;
+        r.stopped = options.progress && !options.progress(r.steps, r.residual);
+        if (r.rested || r.stopped) break;
+    }
+    r.factorisations = stepper.factorisations() - factorised;
+    return r;
+}
+
+} // namespace toile

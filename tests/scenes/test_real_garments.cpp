@@ -9,8 +9,7 @@ using namespace toile::test;
 
 namespace {
 
-void drape_real(const std::string& name, const std::string& body, const std::string& fabric,
-                double edge_length = 0.03) {
+void drape_real(const std::string& name, const std::string& body, const std::string& fabric) {
     const auto pattern = test_data("garmentcode/" + name + "_specification.json");
     const auto avatar = test_data("bodies/" + body + ".obj");
     if (!pattern || !avatar) return;
@@ -19,7 +18,7 @@ void drape_real(const std::string& name, const std::string& body, const std::str
     job.pattern = *pattern;
     job.avatar = *avatar;
     job.fabric = fabric;
-    job.edge_length = edge_length;
+    job.edge_length = 0.03;
     job.garments = {folder / "a.obj", folder / "a.glb"};
     // Triangles of 30 mm are coarse for gathers and necks; ruffles and open fronts turn over here and there.
     drape_soundly(job, fabric, 0.1, 0.95);
@@ -36,6 +35,28 @@ TEST_CASE("real strapless top drapes") { drape_real("strapless_top", "mean_femal
 TEST_CASE("real skirt with godets drapes") { drape_real("godet_skirt", "mean_female", "jersey"); }
 TEST_CASE("real ruffled skirt drapes") { drape_real("two_panel_skirt_ruffled", "mean_all", "poplin"); }
 TEST_CASE("real short trousers drape") { drape_real("shorts", "mean_male", "poplin"); }
-// One side of its collar is sewn through the front, and comes out only as a mesh of its own.
-TEST_CASE("real top with a collar that stays tangled drapes") { drape_real("rand_005", "mean_all", "poplin", 0.02); }
 TEST_CASE("real jumpsuit drapes") { drape_real("jumpsuit", "mean_all", "jersey"); }
+
+// One side of its collar is sewn through the front and comes out only as a mesh of its own. (The file turns the sides of its
+// collars over, so that the look for turned sides does not apply.)
+TEST_CASE("a real collar that stays tangled comes apart") {
+    const auto pattern = test_data("garmentcode/rand_005_specification.json");
+    const auto avatar = test_data("bodies/mean_all.obj");
+    if (!pattern || !avatar) return;
+    const TempFolder folder;
+    DrapeJob job;
+    job.pattern = *pattern;
+    job.avatar = *avatar;
+    job.fabric = "poplin";
+    job.edge_length = 0.02;
+    job.garments = {folder / "a.obj"};
+    const DrapeOutcome drape = run_job(job);
+    INFO(drape.result.where);
+    CHECK(drape.result.status == DrapeStatus::converged);
+    const ReadGarment g = read_garment(job.garments[0]);
+    const Inspection i = inspect(g.garment, g.x, drape.body, PanelFabrics(g.garment.panel_names.size(), fabric_preset("poplin")));
+    CHECK(i.intersections.cloth_avatar == 0);
+    CHECK(i.intersections.cloth_cloth == 0);
+    CHECK(i.seam_gap_max == 0);
+    CHECK(i.strain.weft.max <= i.strain.limit_weft);
+}

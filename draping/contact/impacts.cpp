@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/contact/impacts.h"
 
+#include "geometry/exact_contact.h"
 #include "geometry/parallel.h"
-#include "geometry/toi.h"
 
 #include <algorithm>
 #include <cmath>
@@ -51,6 +51,16 @@ std::optional<Impact> StepPairs::impact(int i, double nearest) const {
     if (t >= 1) return {};
     for (int k = 0; k < 4; ++k) m.x[k] += t * m.dx[k];
     return Impact{i, pair_geometry(m.x, p.edge_edge)};
+}
+
+bool StepPairs::touches(int i) const {
+    const ContactPair& p = contact_.pair(i);
+    const std::array<Vec3, 4> from = contact_.corners(step_.x, p);
+    std::array<Vec3, 4> to;
+    for (int k = 0; k < 4; ++k)
+        to[k] = is_node(p.p[k]) ? Vec3(from[k] + step_.dt * v_[p.p[k]]) : step_.body_end[p.p[k] - nodes_];
+    const PairKind kind = p.edge_edge ? PairKind::edge_edge : PairKind::point_triangle;
+    return time_of_contact(kind, from, to, ToiOptions{}).has_value();
 }
 
 std::vector<int> StepPairs::reachable() const {

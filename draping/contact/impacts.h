@@ -35,6 +35,8 @@ public:
     std::optional<Impact> impact(int pair, double nearest) const;
     /// The same for a tenth of the pair's distance.
     std::optional<Impact> impact(int pair) const;
+    /// Whether the pair touches at all on its way to the places as the step will write them down: without rounding.
+    bool touches(int pair) const;
     /// Pairs that may come nearer than their distance, rising.
     std::vector<int> reachable() const;
     PairGeometry geometry(int i) const; ///< at the start

@@ -60,7 +60,7 @@ struct ResponseDone {
     int impulses = 0;     ///< given to pairs that would have met
     int sweeps = 0;       ///< over them
     int zones = 0, zone_nodes = 0; ///< moved as rigid bodies
-    int unresolved = 0;   ///< impacts that are left; above 0 a guarantee is gone
+    int unresolved = 0;   ///< pairs that touch for all that, by exact arithmetic; above 0 a guarantee is gone
 };
 
 /// Order of touches; of one pair are those of which neither comes first.

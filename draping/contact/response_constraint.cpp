@@ -52,7 +52,7 @@ private:
     }
 
     static bool passes(const StepPairs& pairs, const std::vector<int>& faces) {
-        return std::any_of(faces.begin(), faces.end(), [&](int face) { return pairs.impact(face).has_value(); });
+        return std::any_of(faces.begin(), faces.end(), [&](int face) { return pairs.touches(face); });
     }
 
     /// Lets a node pass none of the faces; returns whether one holds it.

@@ -64,8 +64,12 @@ void resolve_by_zones(StepPairs& pairs, const ResponseStep& step, Points& v, int
     std::map<int, std::set<int>> held;  // the same by zone
     for (int round = 0;; ++round) {
         const std::vector<Impact> impacts = pairs.impacts();
-        done.unresolved = int(impacts.size());
-        if (impacts.empty() || round == rounds) break;
+        if (impacts.empty() || round == rounds) {
+            // Nearer than impacts may come is no crossing yet.
+            done.unresolved = int(std::count_if(impacts.begin(), impacts.end(),
+                                                [&](const Impact& i) { return pairs.touches(i.pair); }));
+            break;
+        }
         for (const Impact& impact : impacts) {
             int first = -1;
             const auto& points = pairs.pair(impact.pair).p;

@@ -10,8 +10,8 @@
 
 namespace toile {
 
-/// Corrects the velocities of a step until no pair meets or `rounds` are over; notes zones, their nodes, and the
-/// impacts that are left, in `done`. A rigid motion written as x + dt (v + w cross r) brings no two points of a zone
+/// Corrects the velocities of a step until no pair meets or `rounds` are over; notes zones, their nodes, and how many of
+/// the impacts that are left touch, in `done`. A rigid motion written as x + dt (v + w cross r) brings no two points of a zone
 /// nearer to each other, so the linear motions of a step keep what it promises. What the body does in a step need not
 /// be rigid; then impacts may be left.
 void resolve_by_zones(StepPairs& pairs, const ResponseStep& step, Points& v, int rounds, ResponseDone& done);

@@ -7,7 +7,6 @@
 #include <limits>
 
 using namespace toile;
-using test::PairKind;
 
 namespace {
 
@@ -15,12 +14,12 @@ constexpr double ulp = std::numeric_limits<double>::epsilon();
 
 bool point(const Vec3& from, const Vec3& to) {
     const Vec3 a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
-    return test::exactly_touch(PairKind::point_triangle, {from, a, b, c}, {to, a, b, c});
+    return exactly_touch(PairKind::point_triangle, {from, a, b, c}, {to, a, b, c});
 }
 
 bool edge(const Vec3& b0, const Vec3& b1, const Vec3& motion) {
     const Vec3 a0(-1, 0, 0), a1(1, 0, 0), still(0, 0, 0);
-    return test::exactly_touch(PairKind::edge_edge, Motion{{a0, a1, b0, b1}, {still, still, motion, motion}});
+    return exactly_touch(PairKind::edge_edge, Motion{{a0, a1, b0, b1}, {still, still, motion, motion}});
 }
 
 } // namespace
@@ -57,7 +56,7 @@ TEST_CASE("exact contact knows a double root from none") {
     // only.
     const auto graze = [](double lift) {
         const Vec3 a(0, 0, 0), b(1, 0, 0);
-        return test::exactly_touch(PairKind::point_triangle, {Vec3(.125, .75, 1 + lift), a, b, Vec3(0, 1, 0)},
+        return exactly_touch(PairKind::point_triangle, {Vec3(.125, .75, 1 + lift), a, b, Vec3(0, 1, 0)},
                                    {Vec3(.125, .25, 3 + lift), a, b, Vec3(0, 1, 8)});
     };
     CHECK(graze(0));
@@ -86,7 +85,7 @@ TEST_CASE("exact contact agrees with distances wherever these are clear") {
             reach = std::max(reach, 2 * d.norm() / 1000);
         for (int i = 1; i <= 1000; ++i)
             least = std::min(least, squared(i / 1000.));
-        const bool touch = test::exactly_touch(kind, m);
+        const bool touch = exactly_touch(kind, m);
         if (std::sqrt(least) > reach) CHECK(!touch);
         if (touch) CHECK(std::sqrt(least) <= reach);
         touching += touch;
@@ -94,4 +93,43 @@ TEST_CASE("exact contact agrees with distances wherever these are clear") {
     }
     CHECK(touching > 50);
     CHECK(apart > 1000);
+}
+
+TEST_CASE("exact contact finds what is built to touch, and nothing beside it") {
+    // All numbers have few bits, so that nothing is rounded: points of the two simplices coincide at t = k / 8. What
+    // moves as a whole touches then or never, and an offset along the normal separates it.
+    test::Random random(17);
+    const auto whole = [&](int range) {
+        const int x = random.below(2 * range + 1) - range, y = random.below(2 * range + 1) - range,
+                  z = random.below(2 * range + 1) - range;
+        return Vec3(x, y, z);
+    };
+    int parted = 0;
+    for (int k = 0; k < 6000; ++k) {
+        const PairKind kind = PairKind(k % 2);
+        const int first = kind == PairKind::point_triangle ? 1 : 2;
+        std::array<Vec3, 4> at;
+        for (Vec3& p : at) p = whole(64);
+        // In eighths: somewhere inside, on an edge or on a corner.
+        const int s = random.below(9), u = random.below(9), v = random.below(9 - u);
+        const Vec3 a = first == 1 ? at[0] : Vec3(at[0] + (at[1] - at[0]) * s / 8);
+        const Vec3 b = first == 1 ? Vec3(at[1] + ((at[2] - at[1]) * u + (at[3] - at[1]) * v) / 8)
+                                  : Vec3(at[2] + (at[3] - at[2]) * u / 8);
+        for (int i = 0; i < first; ++i) at[i] += b - a;
+        const double t = random.below(9) / 8.;
+        const bool together = random.below(2);
+        const Vec3 common = whole(64), origin = whole(1) * std::exp2(random.below(30));
+        Motion m;
+        for (int i = 0; i < 4; ++i) {
+            m.dx[i] = together ? common : whole(64);
+            m.x[i] = origin + at[i] - t * m.dx[i];
+        }
+        CHECK(exactly_touch(kind, m));
+        const Vec3 n = first == 1 ? Vec3((at[2] - at[1]).cross(at[3] - at[1])) : Vec3((at[1] - at[0]).cross(at[3] - at[2]));
+        if (!together || n.isZero(0)) continue;
+        ++parted;
+        for (int i = 0; i < first; ++i) m.x[i] += 0x1p-36 * n;
+        if (origin.cwiseAbs().maxCoeff() < 1e3) CHECK(!exactly_touch(kind, m));
+    }
+    CHECK(parted > 2500);
 }

@@ -16,7 +16,7 @@ using namespace toile;
 namespace {
 
 using Four = std::array<Vec3, 4>;
-using Kind = test::PairKind;
+using Kind = PairKind;
 
 double toi(Kind kind, const Motion& m, const ToiOptions& options) {
     return kind == Kind::point_triangle ? time_of_impact_point_triangle(m, options)
@@ -224,7 +224,7 @@ TEST_CASE("time of impact of the reference queries with exact times") {
         const Kind kind = q["kind"] == "vertex-face" ? Kind::point_triangle : Kind::edge_edge;
         const Motion m = between(x0, x1);
         check_against_exact(q["name"], kind, m, hit, hit ? q["toi"].get<double>() : -1.0);
-        CHECK(test::exactly_touch(kind, x0, x1) == hit);
+        CHECK(exactly_touch(kind, x0, x1) == hit);
         if (hit) CHECK(test::toi_touch(kind, m, 0));
         if (hit) CHECK(test::toi_touch(kind, m, 1e-6));
     }
@@ -256,7 +256,7 @@ TEST_CASE("no query of the public collection with a collision is passed, and non
     const auto folder = test::reference_data("ccd");
     if (!folder) return;
     std::array<int, 2> queries{}, contacts{}, missed{}, missed_within{}, stopped{}, stopped_within{}, apart{};
-    int wrong_truth = 0;
+    int wrong_truth = 0, wrong_contact = 0, late = 0;
     for (const test::CcdQuery& q : test::read_ccd_queries(*folder)) {
         const int k = int(q.kind);
         const Motion m = between(q.from, q.to);
@@ -268,13 +268,21 @@ TEST_CASE("no query of the public collection with a collision is passed, and non
         stopped[k] += !q.touch && touch;
         stopped_within[k] += !q.touch && near;
         apart[k] += near && !comes_within(q.kind, m, 1e-6);
-        wrong_truth += test::exactly_touch(q.kind, q.from, q.to) != q.touch;
+        wrong_truth += exactly_touch(q.kind, q.from, q.to) != q.touch;
+        const std::optional<double> t = time_of_contact(q.kind, q.from, q.to, {.min_distance = 1e-6});
+        wrong_contact += t.has_value() != q.touch;
+        if (!t) continue;
+        Motion until = m;
+        for (Vec3& d : until.dx) d *= *t;
+        late += *t > 0 && exactly_touch(q.kind, until);
     }
     CHECK(queries == std::array{3085, 4194});
     CHECK(contacts == std::array{248, 187});
     CHECK(missed == std::array{0, 0});
     CHECK(missed_within == std::array{0, 0});
-    CHECK(wrong_truth == 0); // exact arithmetic agrees with the collection
+    CHECK(wrong_truth == 0);   // exact arithmetic agrees with the collection
+    CHECK(wrong_contact == 0); // and so does what asks it only where the pair comes near
+    CHECK(late == 0);
     // Of the misses 390 come within 1e-10, most of them within the rounding of their coordinates, and all
     // that are stopped at a distance of 1e-6 do come within it.
     CHECK(apart == std::array{0, 0});
@@ -285,30 +293,39 @@ TEST_CASE("no query of the public collection with a collision is passed, and non
 
 TEST_CASE("a random search against exact arithmetic finds no contact that is missed") {
     test::Random random(21);
-    int contacts = 0, missed = 0, passed = 0, stopped = 0;
+    int contacts = 0, missed = 0, passed = 0, stopped = 0, wrong = 0, late = 0;
     constexpr int families = int(test::CcdFamily::count), each = 1000;
     for (int k = 0; k < families * 2 * each; ++k) {
         const auto family = test::CcdFamily(k / 2 % families);
         const Kind kind = Kind(k % 2);
         double size;
         const Motion m = test::random_ccd_query(family, kind, random, size);
-        const bool touch = test::exactly_touch(kind, m);
+        const bool touch = exactly_touch(kind, m);
         // Searching for the last digits of a distance of nothing takes long, and ends with a time below 1 the
         // sooner.
         const double t = toi(kind, m, {1e-9, 0, 1000});
         contacts += touch;
         missed += touch && t == 1;
         stopped += t < 1 && !touch;
+        const std::optional<double> contact = time_of_contact(kind, m, {.min_distance = 1e-6 * size});
+        wrong += contact.has_value() != touch;
         if (!touch) continue;
         const double free = toi(kind, m, {});
         Motion allowed = m;
         for (Vec3& d : allowed.dx)
             d *= free;
-        passed += free > 0 && test::exactly_touch(kind, allowed);
+        passed += free > 0 && exactly_touch(kind, allowed);
+        if (!contact) continue;
+        allowed = m;
+        for (Vec3& d : allowed.dx)
+            d *= *contact;
+        late += *contact > 0 && exactly_touch(kind, allowed);
     }
     CHECK(contacts > 2500);
     CHECK(missed == 0);
     CHECK(passed == 0);
+    CHECK(wrong == 0);
+    CHECK(late == 0);
     CHECK(stopped < 3000); // near misses on purpose, nearer than rounding
 }
 

@@ -9,7 +9,6 @@
 #include <fstream>
 
 using namespace toile;
-using test::PairKind;
 
 namespace {
 
@@ -44,7 +43,7 @@ TEST_CASE("the first of three roots is found, and the ones outside of the triang
         }
         const auto t =
             kind == PairKind::point_triangle ? cubic_toi_point_triangle(m, 0) : cubic_toi_edge_edge(m, 0);
-        CHECK(t.has_value() == test::exactly_touch(kind, m)); // nothing here is degenerate
+        CHECK(t.has_value() == exactly_touch(kind, m)); // nothing here is degenerate
         if (!t) continue;
         ++found;
         Motion before = m, until = m;
@@ -52,8 +51,8 @@ TEST_CASE("the first of three roots is found, and the ones outside of the triang
             before.dx[i] *= *t - 1e-9;
             until.dx[i] *= *t + 1e-9;
         }
-        CHECK(!test::exactly_touch(kind, before));
-        CHECK(test::exactly_touch(kind, until));
+        CHECK(!exactly_touch(kind, before));
+        CHECK(exactly_touch(kind, until));
     }
     CHECK(found > 1000);
 }
@@ -61,7 +60,7 @@ TEST_CASE("the first of three roots is found, and the ones outside of the triang
 TEST_CASE("what the cubic cannot do: a contact within one plane is passed at any tolerance") {
     const Motion slide =
         point_falls({-1, .25, 0}, {3, .25, 0}); // through the triangle, both ends outside of it
-    CHECK(test::exactly_touch(PairKind::point_triangle, slide));
+    CHECK(exactly_touch(PairKind::point_triangle, slide));
     for (const double tolerance : {0.0, 1e-6, 1e-3})
         CHECK(!test::cubic_touch(PairKind::point_triangle, slide, tolerance));
     CHECK(test::toi_touch(PairKind::point_triangle, slide, 0));
@@ -76,7 +75,7 @@ TEST_CASE("what the cubic cannot do: contacts in one plane, without closing spee
             const PairKind kind = PairKind(k % 2);
             double size;
             const Motion m = test::random_ccd_query(family, kind, random, size);
-            if (!test::exactly_touch(kind, m)) continue;
+            if (!exactly_touch(kind, m)) continue;
             ++contacts;
             missed += !test::cubic_touch(kind, m, 1e-6 * size);
             missed_by_toi += !test::toi_touch(kind, m, 1e-6 * size);

@@ -5,7 +5,7 @@
 // degenerate, or nearly so, on purpose.
 
 #include "geometry/toi_cubic.h"
-#include "tests/support/exact_contact.h"
+#include "geometry/exact_contact.h"
 #include "tests/support/random.h"
 
 #include <algorithm>

@@ -220,6 +220,25 @@ TEST_CASE("impulse: what the sweeps leave, zones take", "[responses]") {
     for (int s = 0; s + 1 < 8; ++s) CHECK(p.x[9 * s].y() < p.x[9 * (s + 1)].y());
 }
 
+TEST_CASE("what comes nearer than impacts may, but does not touch, is not unresolved", "[responses]") {
+    // Neither sweeps nor zones: what the start has in store happens.
+    ResponseOptions o;
+    o.repulsion_sweeps = o.impulse_sweeps = o.zone_rounds = 0;
+    const auto unresolved = [&](ContactResponse kind, double end) {
+        Particles p = one_triangle(0.5 * o.thickness);
+        p.gravity = 0;
+        for (double& m : p.inverse_mass) m = 0; // led: no constraint holds it
+        for (Vec3& v : p.v) v.y() = (end - 0.5 * o.thickness) / 1e-3;
+        return p.step(*response_of(kind, p, floor_face(), o), 1e-3).unresolved;
+    };
+    for (const ContactResponse kind : {ContactResponse::impulse, ContactResponse::constraint}) {
+        INFO(to_string(kind));
+        CHECK(unresolved(kind, 0.01 * o.thickness) == 0);
+        CHECK(unresolved(kind, 1e-9 * o.thickness) == 0);
+        CHECK(unresolved(kind, -1e-9 * o.thickness) > 0);
+    }
+}
+
 TEST_CASE("impulses and zones keep the momentum of cloth that meets cloth", "[responses]") {
     for (const ContactResponse kind : {ContactResponse::impulse, ContactResponse::rigid}) {
         INFO(to_string(kind));

@@ -142,6 +142,7 @@ void ClothProblem::touch(const Points& x) {
 void ClothProblem::arrive(const Points& x) {
     touch(x);
     if (friction.coefficient == 0) return;
+    const Stopwatch::Lap lap(contact_.clock());
     if (trusted_) {
         take_up_friction(x);
         return;
@@ -162,6 +163,7 @@ void ClothProblem::arrive(const Points& x) {
 
 double ClothProblem::value(const Points& x) {
     double sum = sheet_value(sheet_, x) + toile::value(*this, node_mass_, x);
+    const Stopwatch::Lap lap(contact_.clock());
     if (friction.coefficient > 0) sum += toile::value(friction, x);
     return sum + contact_.value(contact_.active(x));
 }
@@ -173,8 +175,11 @@ void ClothProblem::gradient_with(const std::vector<ActivePair>& active, const Po
     sheet_gradient(sheet_, x, sheet);
     g = flat(sheet);
     add_gradient(*this, node_mass_, x, g);
-    if (friction.coefficient > 0) add_gradient(friction, x, g);
-    contact_.add_gradient(active, g);
+    {
+        const Stopwatch::Lap lap(contact_.clock());
+        if (friction.coefficient > 0) add_gradient(friction, x, g);
+        contact_.add_gradient(active, g);
+    }
     clear_pinned(g);
 }
 
@@ -200,6 +205,7 @@ BlockMatrix& ClothProblem::hessian(const Points& x, bool exact, bool& pattern_ch
     }
     sheet_hessian(sheet_, x, exact ? HessianKind::exact : HessianKind::projected, matrix_);
     add_hessian(*this, x, matrix_);
+    const Stopwatch::Lap lap(contact_.clock());
     if (friction.coefficient > 0) add_hessian(friction, x, exact, matrix_);
     return matrix_;
 }

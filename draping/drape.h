@@ -64,6 +64,7 @@ struct ContactReport {
     ContactResponse response = ContactResponse::barrier;
     Guarantee guarantee = Guarantee::none; ///< that held to the end: none when the start of a level crossed something,
     int unresolved = 0;                    ///< or a step left impacts unresolved, which so many did
+    double seconds = 0;                    ///< wall time of contact, part of that of the stages
 };
 
 /// A drape and by how much it met each promise.

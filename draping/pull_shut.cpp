@@ -241,6 +241,7 @@ Sewn pull_shut(DrapeRun& run, const Start& start, const Sewing& way) {
     sewn.gap = seam_gap_max(open, sewn.x); // of those that wait as well, if it was stopped before their turn
     sewn.open = sewn.gap >= forced_share * run.edge_length();
     if (sewn.open) note_open_seam(run, problem, sewn);
+    run.result.contact.seconds += problem.contact().clock().seconds();
     return sewn;
 }
 

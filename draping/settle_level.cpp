@@ -259,6 +259,7 @@ void settle_level(DrapeRun& run) {
             run.result.warnings.push_back(
                 text("%d triangles are stretched beyond their fabric's limit", beyond));
     }
+    report.seconds += problem.contact().clock().seconds() + (motion ? motion->cloth.contact.seconds() : 0);
     run.book(text("settle %g mm", 1e3 * run.edge_length()), start);
 }
 

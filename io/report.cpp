@@ -70,6 +70,7 @@ Json seconds(const DrapeResult& r, const ReportContext& context) {
     for (const auto* list : {&context.seconds, &r.seconds})
         for (const StageSeconds& s : *list)
             out[s.stage] = out.value(s.stage, 0.0) + s.seconds;
+    out["contact"] = r.contact.seconds;
     return out;
 }
 

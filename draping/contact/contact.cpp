@@ -215,6 +215,7 @@ double Contact::slack_for(double step) const {
 }
 
 bool Contact::prepare(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx) {
+    const Stopwatch::Lap lap(clock_);
     // Pairs of nodes that stay within their slack serve on; those of the others are looked for anew, and those of
     // nodes that need less slack by now, whose pairs are many.
     const double least = std::min(least_slack, most_slack_);
@@ -370,6 +371,7 @@ void Contact::find_pairs(const std::vector<char>& moved_node) {
 }
 
 std::vector<ActivePair> Contact::active(const Points& x) const {
+    const Stopwatch::Lap lap(clock_);
     const std::vector<double> distance = moved_since_built(x);
     const int n = int(pairs_.size()), chunk = 1024, chunks = (n + chunk - 1) / chunk;
     std::vector<std::vector<ActivePair>> found(chunks);
@@ -391,6 +393,7 @@ std::vector<ActivePair> Contact::active(const Points& x) const {
 }
 
 double Contact::value(const std::vector<ActivePair>& active) const {
+    const Stopwatch::Lap lap(clock_);
     double sum = 0;
     for (const ActivePair& a : active) {
         const ContactPair& p = pairs_[a.pair];
@@ -400,6 +403,7 @@ double Contact::value(const std::vector<ActivePair>& active) const {
 }
 
 void Contact::add_gradient(const std::vector<ActivePair>& active, Eigen::VectorXd& g) const {
+    const Stopwatch::Lap lap(clock_);
     for (const ActivePair& a : active) {
         const ContactPair& p = pairs_[a.pair];
         const Barrier b = barrier(p);
@@ -415,6 +419,7 @@ void Contact::add_gradient(const std::vector<ActivePair>& active, Eigen::VectorX
 }
 
 bool Contact::add_hessian(const Points& x, const std::vector<ActivePair>& active, bool exact, BlockMatrix& h) const {
+    const Stopwatch::Lap lap(clock_);
     bool complete = true;
     for (const ActivePair& a : active) {
         const ContactPair& p = pairs_[a.pair];
@@ -444,6 +449,7 @@ bool Contact::add_hessian(const Points& x, const std::vector<ActivePair>& active
 }
 
 void Contact::couplings(const std::vector<ActivePair>& active, std::vector<std::pair<int, int>>& pairs) const {
+    const Stopwatch::Lap lap(clock_);
     const auto couple = [&pairs](const ContactPair& p) {
         if (p.with_body) return; // cloth nodes of one edge or triangle, which the sheet couples
         for (int i = 0; i < 4; ++i)
@@ -463,6 +469,7 @@ std::vector<double> Contact::lengths(const Eigen::VectorXd& dx, const Points* bo
 }
 
 std::vector<int> Contact::within_reach(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx) const {
+    const Stopwatch::Lap lap(clock_);
     const std::vector<double> distance = moved_since_built(x), step = lengths(dx, body_dx);
     std::vector<int> found;
     for (int i = 0; i < int(pairs_.size()); ++i) {
@@ -474,6 +481,7 @@ std::vector<int> Contact::within_reach(const Points& x, const Eigen::VectorXd& d
 
 double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx, int* blocking,
                               std::vector<double>* shares) const {
+    const Stopwatch::Lap lap(clock_);
     const std::vector<double> distance = moved_since_built(x), step = lengths(dx, body_dx);
     const auto motion_of = [&](int i) -> Vec3 {
         if (i < nodes_) return dx.segment<3>(3 * i);
@@ -515,6 +523,7 @@ double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const 
 }
 
 Points Contact::body_forces(const std::vector<ActivePair>& active) const {
+    const Stopwatch::Lap lap(clock_);
     Points force(nodes_, Vec3::Zero());
     for (const ActivePair& a : active) {
         const ContactPair& p = pairs_[a.pair];
@@ -527,6 +536,7 @@ Points Contact::body_forces(const std::vector<ActivePair>& active) const {
 }
 
 int Contact::widen(Points& x) {
+    const Stopwatch::Lap lap(clock_);
     constexpr int sweeps = 30;
     int near = 1;
     for (int sweep = 0; sweep < sweeps && near > 0; ++sweep) {
@@ -547,6 +557,7 @@ int Contact::widen(Points& x) {
 }
 
 std::vector<ContactPair> Contact::violations(const Points& x) {
+    const Stopwatch::Lap lap(clock_);
     built_ = false;
     prepare(x, Eigen::VectorXd::Zero(3 * nodes_));
     std::vector<ContactPair> violated;

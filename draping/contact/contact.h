@@ -8,6 +8,7 @@
 #include "draping/algebra/block_matrix.h"
 #include "geometry/bvh.h"
 #include "geometry/edges.h"
+#include "geometry/stopwatch.h"
 #include "geometry/tri_mesh.h"
 
 #include <string>
@@ -114,6 +115,9 @@ public:
     std::array<Vec3, 4> corners(const Points& x, const ContactPair& p) const;
     int node_count() const { return nodes_; }
 
+    /// Has the wall time of all of the above; what else is part of contact may take laps of its own.
+    Stopwatch& clock() const { return clock_; }
+
 private:
     Vec3 at(const Points& x, int i) const { return i < nodes_ ? x[i] : body_[i - nodes_]; }
     Barrier barrier(const ContactPair& p) const;
@@ -126,6 +130,7 @@ private:
     bool near_in_cloth(const ContactPair& p) const;
     void make_body_trees();
 
+    mutable Stopwatch clock_;
     ContactCloth cloth_;
     ContactOptions options_;
     int nodes_ = 0;

@@ -238,7 +238,7 @@ ResponseDone ImplicitStepper::step(Moving& cloth, const Points& body_end) {
     ResponseDone done;
     Points v = cloth.velocity;
     if (response_.known_at_start()) {
-        done = response_.respond(seen, v);
+        done = respond(cloth, response_, seen, v);
         one.take_up(done, v);
         v = one.candidate();
         slow(v, dt, options_.max_motion);
@@ -247,7 +247,7 @@ ResponseDone ImplicitStepper::step(Moving& cloth, const Points& body_end) {
         for (std::size_t i = 0; i < n; ++i) // what the response is to do anew
             v[i] -= dt * inverse_mass[i] * cloth.other_force[i];
         slow(v, dt, options_.max_motion);
-        done = response_.respond(seen, v);
+        done = respond(cloth, response_, seen, v);
         one.take_up(done, v);
     }
     for (std::size_t i = 0; i < n; ++i) cloth.x[i] += dt * v[i];

@@ -30,12 +30,17 @@ void slow(Points& v, double dt, double max_motion) {
     }
 }
 
+ResponseDone respond(Moving& cloth, Response& response, const ResponseStep& step, Points& v) {
+    const Stopwatch::Lap lap(cloth.contact);
+    return response.respond(step, v);
+}
+
 ResponseDone go(Moving& cloth, Response& response, const std::vector<double>& inverse_mass, const Points& body_end,
                 const StepOptions& options, Points v) {
     const double dt = options.time_step;
     cloth.velocity.resize(cloth.x.size(), Vec3::Zero());
     slow(v, dt, options.max_motion);
-    ResponseDone done = response.respond({dt, cloth.x, cloth.velocity, inverse_mass, body_end}, v);
+    ResponseDone done = respond(cloth, response, {dt, cloth.x, cloth.velocity, inverse_mass, body_end}, v);
     cloth.touches.clear();
     for (const Touch& t : done.touches) cloth.touches.push_back({t});
     cloth.other_force = done.other_force;

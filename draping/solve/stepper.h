@@ -30,6 +30,7 @@ struct Moving {
     Points velocity = {};                ///< m/s; empty: at rest
     std::vector<HeldTouch> touches = {}; ///< sorted
     Points other_force = {};             ///< N per node, of all other contact
+    Stopwatch contact = {};              ///< has the wall time of the response
 
     /// Force of contact on every node in the last step, N.
     Points contact_force() const;
@@ -59,6 +60,9 @@ double kinetic_energy(const std::vector<double>& node_mass, const Moving& cloth)
 
 /// Slows what would go farther than `max_motion` (m) within dt. Throws std::runtime_error when a velocity is not finite.
 void slow(Points& v, double dt, double max_motion);
+
+/// What the response does, on the cloth's watch.
+ResponseDone respond(Moving& cloth, Response& response, const ResponseStep& step, Points& v);
 
 /// The end of a step whose velocities without contact are `v`: slowed, corrected by the response, and gone. What
 /// contact did is then with the cloth. `inverse_mass`: 1/kg, 0 for what is pinned.

@@ -30,6 +30,7 @@ DrapeResult result_of(const test::Skirt& skirt) {
     r.barrier = {5e-4, 1e6};
     r.levels = {{0.02, 100, 20, 5, 0.5}, {0.01, 400, 12, 3, 0.7}};
     r.seconds = {{"sew", 0.5}, {"settle", 0.3}, {"settle", 0.4}};
+    r.contact.seconds = 0.25;
     r.decisions = {"no contact of cloth with cloth: no two parts come within 3 mm"};
     r.landmarks = {{"left_collar", 1.39, 1.48, Belongs::neck, 0.02}, {"left_armhole", 1.33, 1.41}};
     r.warnings = {"second"};
@@ -74,6 +75,7 @@ TEST_CASE("a report is valid by the published schema and says what was measured"
     CHECK(r["ease"]["hip"]["ease"].get<double>() == Approx(2 * EIGEN_PI * 0.01).epsilon(0.02));
     CHECK(r["seconds"]["settle"].get<double>() == Approx(0.7));
     CHECK(r["seconds"]["total"] == 1.5);
+    CHECK(r["seconds"]["contact"] == 0.25);
     CHECK(r["warnings"] == nlohmann::json{"first", "second"});
     CHECK(r["decisions"].size() == 2);
     CHECK(r["landmarks"][0]["belongs"] == "neck");

@@ -65,6 +65,8 @@ TEST_CASE("one command makes a garment, its report and its picture, and they agr
     CHECK_THAT(report["blas"].get<std::string>(), Contains("OpenBLAS"));
     CHECK(report["ease"]["bust"]["ease"].get<double>() > 0);
     CHECK(report["seconds"]["total"].get<double>() >= report["seconds"]["sew"].get<double>());
+    CHECK(report["seconds"]["total"].get<double>() > report["seconds"]["contact"].get<double>());
+    CHECK(report["seconds"]["contact"].get<double>() > 0);
 
     const nlohmann::json obj = inspection(folder / "a.obj", folder / "form.obj");
     const nlohmann::json glb = inspection(folder / "a.glb", folder / "form.obj");

@@ -174,14 +174,16 @@ struct FlungEnd {
 };
 
 /// Lets the panels fly with momentum for an eighth of a second, every node as far as what it meets allows, and brings
-/// them to rest under gravity, within so many iterations.
-inline FlungEnd fling(FlungScene& s, int most_iterations) {
+/// them to rest under gravity, within so many iterations; without contact of cloth with cloth unless `self`.
+inline FlungEnd fling(FlungScene& s, int most_iterations, bool self = true) {
     constexpr double dt = 5e-3, fastest = 10;
     constexpr double keep_off = 0.5; // of the way to what is in the way: step after step all of it ends on the barrier's floor
     constexpr int steps = 25;
     double density = 0;
     for (const Fabric& f : s.fabrics) density = std::max(density, f.density);
-    ClothProblem problem(s.garment, s.fabrics, s.body, barriers_at(0.5e-3, density));
+    ContactOptions contact = barriers_at(0.5e-3, density);
+    contact.self = self;
+    ClothProblem problem(s.garment, s.fabrics, s.body, contact);
     problem.gravity = 9.81;
     problem.rest_here(s.x, 0.3);
     Cholesky factor;

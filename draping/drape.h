@@ -63,7 +63,7 @@ struct BarrierReport {
 struct ContactReport {
     ContactResponse response = ContactResponse::barrier;
     Guarantee guarantee = Guarantee::none; ///< that held to the end: none when the start of a level crossed something,
-    int unresolved = 0;                    ///< or a step left impacts unresolved, which so many did
+    int unresolved = 0;                    ///< or a pair touched in a step, as in so many
     double seconds = 0;                    ///< wall time of contact, part of that of the stages
 };
 

@@ -84,7 +84,7 @@ struct RestResult {
     double speed = 0;   ///< m/s, root of the mean square over the mass
     int steps = 0;
     int factorisations = 0;
-    int unresolved = 0; ///< steps that left impacts unresolved
+    int unresolved = 0; ///< steps in which a pair touched
 };
 
 /// Steps with the body at rest at `body` until the cloth is.

@@ -41,7 +41,7 @@ std::string friction_sentence(const DrapeFacts& f, int nodes) {
 
 std::string response_sentence(const DrapeFacts& f) {
     return text("contact was answered by the response \"%s\" while the levels came to rest in damped motion; its guarantee "
-                "at the end is \"%s\", steps that left impacts unresolved: %d",
+                "at the end is \"%s\", steps in which a pair touched for all that: %d",
                 to_string(f.contact.response), to_string(f.contact.guarantee), f.contact.unresolved);
 }
 

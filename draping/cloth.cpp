@@ -75,8 +75,10 @@ ClothProblem::ClothProblem(const Garment& garment, const PanelFabrics& fabrics, 
     limits_.swap(sheet_.limits);
 }
 
-void ClothProblem::rest_here(const Points& x, double coefficient, bool at_rest) {
-    friction = friction_at(x, coefficient);
+void ClothProblem::rest_here(const Points& x, const FrictionCoefficients& coefficients, bool at_rest) {
+    friction = friction_at(x, coefficients.body);
+    cloth_friction = {};
+    cloth_friction.coefficient = coefficients.cloth;
     arrivals_ = 0;
     residual_ = renewed_at_ = std::numeric_limits<double>::infinity();
     near_rest_ = rising_ = false;
@@ -93,45 +95,55 @@ void ClothProblem::limit_strain(double turn, double tighter) {
     }
 }
 
+void ClothProblem::match_cloth_friction(const Points& x) {
+    cloth_forces_ = contact_.cloth_forces(active_);
+    match_ties(cloth_friction, cloth_forces_, arrived_at_, x);
+    arrived_at_ = x;
+}
+
 void ClothProblem::renew_friction(const Points& x) {
-    const Points force = contact_.body_forces(active_);
     rising_ = false;
-    drag_places(friction, x);
-    for (int i = 0; i < points(); ++i) {
-        const double now = force[i].norm();
-        if (now == 0) {
-            friction.force[i] = 0;
-        } else if (std::abs(now - friction.force[i]) > friction_slack(friction, x, i) * now) {
-            // Impacts of a single step must not become friction: the force follows a rise slowly.
-            const double most = std::max(2 * friction.force[i], 9.81 * node_mass_[i]);
-            friction.force[i] = trusted_ ? now : std::min(now, most);
-            friction.normal[i] = force[i] / now;
-            rising_ = rising_ || friction.force[i] < now;
+    const auto weight = [&](int i) { return 9.81 * node_mass_[i]; };
+    if (friction.coefficient > 0) {
+        std::vector<double> least(points());
+        for (int i = 0; i < points(); ++i) least[i] = weight(i);
+        rising_ = renew(friction, x, contact_.body_forces(active_), least, trusted_);
+    }
+    if (cloth_friction.coefficient > 0) {
+        Points force;
+        std::vector<double> least;
+        for (const PairForce& f : cloth_forces_) {
+            force.push_back(f.force);
+            double carried = 0;
+            for (int k = 0; k < 4; ++k) carried += std::abs(f.weight[k]) * weight(f.point[k]);
+            least.push_back(carried);
         }
+        rising_ = renew(cloth_friction, x, force, least, trusted_) || rising_;
     }
 }
 
 void ClothProblem::adapt_friction(const Points& x) {
-    const Points force = contact_.body_forces(active_);
-    for (int i = 0; i < points(); ++i)
-        if (friction.force[i] > 0) follow(friction, x, i, force[i].norm(), residual_ < friction_rest);
+    const bool at_rest = residual_ < friction_rest;
+    if (friction.coefficient > 0) {
+        const Points force = contact_.body_forces(active_);
+        for (int i = 0; i < points(); ++i)
+            if (friction.ties[i].force > 0) follow(friction, x, i, force[i].norm(), at_rest);
+    }
+    for (int t = 0; t < int(cloth_friction.ties.size()); ++t) {
+        const double press = cloth_forces_[t].force.norm();
+        if (cloth_friction.ties[t].force > 0)
+            follow(cloth_friction, x, t, press, at_rest);
+        else
+            cloth_friction.ties[t].force = press;
+    }
 }
 
-// What is left of the forces at rest is friction. The state came to rest with the normals of a few steps before: a
-// normal within 30 degrees that leaves no force over is taken for the one it had.
 void ClothProblem::take_up_friction(const Points& x) {
     renew_friction(x);
     trusted_ = false;
     Eigen::VectorXd g;
     gradient(x, g);
-    for (int i = 0; i < points(); ++i) {
-        const Vec3 force = g.segment<3>(3 * i);
-        if (!(friction.force[i] > 0 && force.norm() > 0)) continue;
-        Vec3& normal = friction.normal[i];
-        const Vec3 along = force.normalized();
-        if (std::abs(normal.dot(along)) < 0.5) normal = (normal - normal.dot(along) * along).normalized();
-        hold_by(friction, x, i, force - force.dot(normal) * normal);
-    }
+    take_up(friction, cloth_friction, x, pinned_, g);
 }
 
 void ClothProblem::touch(const Points& x) {
@@ -141,8 +153,9 @@ void ClothProblem::touch(const Points& x) {
 
 void ClothProblem::arrive(const Points& x) {
     touch(x);
-    if (friction.coefficient == 0) return;
+    if (friction.coefficient == 0 && cloth_friction.coefficient == 0) return;
     const Stopwatch::Lap lap(contact_.clock());
+    if (cloth_friction.coefficient > 0) match_cloth_friction(x);
     if (trusted_) {
         take_up_friction(x);
         return;
@@ -165,6 +178,7 @@ double ClothProblem::value(const Points& x) {
     double sum = sheet_value(sheet_, x) + toile::value(*this, node_mass_, x);
     const Stopwatch::Lap lap(contact_.clock());
     if (friction.coefficient > 0) sum += toile::value(friction, x);
+    if (cloth_friction.coefficient > 0) sum += toile::value(cloth_friction, x);
     return sum + contact_.value(contact_.active(x));
 }
 
@@ -178,6 +192,7 @@ void ClothProblem::gradient_with(const std::vector<ActivePair>& active, const Po
     {
         const Stopwatch::Lap lap(contact_.clock());
         if (friction.coefficient > 0) add_gradient(friction, x, g);
+        if (cloth_friction.coefficient > 0) add_gradient(cloth_friction, x, g);
         contact_.add_gradient(active, g);
     }
     clear_pinned(g);
@@ -188,6 +203,7 @@ void ClothProblem::make_pattern() {
     sheet_couplings(sheet_, pairs);
     couplings(*this, pairs);
     contact_.couplings(active_, pairs);
+    couplings(cloth_friction, pairs);
     matrix_ = BlockMatrix(points(), pairs);
     sheet_slots(sheet_, matrix_);
     matrix_made_ = true;
@@ -200,7 +216,9 @@ BlockMatrix& ClothProblem::hessian(const Points& x, bool exact, bool& pattern_ch
             pattern_changed = true;
         }
         matrix_.set_zero();
-        if (contact_.add_hessian(x, active_, exact, matrix_)) break;
+        bool complete = contact_.add_hessian(x, active_, exact, matrix_);
+        if (cloth_friction.coefficient > 0) complete = add_hessian(cloth_friction, x, exact, matrix_) && complete;
+        if (complete) break;
         matrix_made_ = false;
     }
     sheet_hessian(sheet_, x, exact ? HessianKind::exact : HessianKind::projected, matrix_);
@@ -231,13 +249,29 @@ double ClothProblem::feasible_step(const Points& x, const Eigen::VectorXd& dx, s
     return contact_.feasible_step(x, dx, nullptr, shares ? &blocking_ : nullptr, shares);
 }
 
-double ClothProblem::unanswered(const Points& x, int i) const {
-    if (friction.coefficient == 0) return 0;
-    return std::max(0.0, friction_force(friction, x, i).norm() - friction.coefficient * normal_[i].norm());
+std::vector<double> ClothProblem::friction_excess(const Points& x) const {
+    std::vector<double> excess(points(), 0.0);
+    if (friction.coefficient > 0) {
+        const Points normal = contact_.body_forces(active_);
+        for (int i = 0; i < points(); ++i) {
+            const double limit = friction.coefficient * normal[i].norm();
+            excess[i] = std::max(0.0, friction_force(friction, x, i).norm() - limit);
+        }
+    }
+    for (int t = 0; t < int(cloth_friction.ties.size()); ++t) {
+        const PairForce& f = cloth_forces_[t];
+        const double limit = cloth_friction.coefficient * f.force.norm();
+        const double over = friction_force(cloth_friction, x, t).norm() - limit;
+        if (!(over > 0)) continue;
+        for (int k = 0; k < 4; ++k) excess[f.point[k]] += std::abs(f.weight[k]) * over;
+    }
+    return excess;
 }
 
+double ClothProblem::unanswered(const Points&, int i) const { return excess_[i]; }
+
 double ClothProblem::residual(const Points& x, const Eigen::VectorXd& g) {
-    if (friction.coefficient > 0) normal_ = contact_.body_forces(active_);
+    excess_ = friction_excess(x);
     return residual_ = NodeProblem::residual(x, g);
 }
 

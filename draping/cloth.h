@@ -3,8 +3,8 @@
 
 // Everything that acts on a garment, as one problem for a solver.
 
+#include "draping/contact/cloth_friction.h"
 #include "draping/contact/contact.h"
-#include "draping/contact/friction.h"
 #include "draping/contact/untangle.h"
 #include "draping/energy/sheet.h"
 #include "draping/measure.h"
@@ -28,7 +28,8 @@ public:
     ClothProblem(const Garment& garment, const PanelFabrics& fabrics, const TriMesh& body,
                  const ContactOptions& contact);
 
-    Friction friction;  ///< coefficient 0: none
+    Friction friction;       ///< on the body; coefficient 0: none
+    Friction cloth_friction; ///< of cloth on cloth
 
     Sheet& sheet() { return sheet_; }
     Contact& contact() { return contact_; }
@@ -36,7 +37,7 @@ public:
 
     /// Every touching or later touching node is tied by friction to where it is now. If x is a state at rest,
     /// friction is at once what holds it there; otherwise it follows contact slowly.
-    void rest_here(const Points& x, double coefficient, bool at_rest = false);
+    void rest_here(const Points& x, const FrictionCoefficients& coefficients, bool at_rest = false);
 
     /// Turns the strain limits on, as hard as `turn` says (see StrainLimit), and `tighter` by that share than the
     /// fabric's.
@@ -64,13 +65,18 @@ private:
 
     void make_pattern();
     void gradient_with(const std::vector<ActivePair>& active, const Points& x, Eigen::VectorXd& g) const;
+    void match_cloth_friction(const Points& x);
     void renew_friction(const Points& x);
     void adapt_friction(const Points& x);
     void take_up_friction(const Points& x);
+    /// Of friction over what contact can answer, N per node.
+    std::vector<double> friction_excess(const Points& x) const;
 
     Sheet sheet_;
     Contact contact_;
     std::vector<ActivePair> active_; ///< at the state of the last arrive()
+    std::vector<PairForce> cloth_forces_; ///< then, one for each tie
+    Points arrived_at_;
     BlockMatrix matrix_;
     bool matrix_made_ = false;
     std::vector<StrainLimit> limits_; ///< as the fabrics have them
@@ -79,7 +85,7 @@ private:
     bool trusted_ = false;           ///< the contact forces of the next arrival are those of a state at rest
     bool rising_ = false;            ///< some node's friction has yet to catch up with its normal force
     double residual_ = 0, renewed_at_ = 0;
-    Points normal_; ///< forces of the body in the last residual(), where friction acts
+    std::vector<double> excess_; ///< in the last residual()
     int blocking_ = -1;
 };
 

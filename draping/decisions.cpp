@@ -23,20 +23,28 @@ std::string contact_sentence(const DrapeFacts& f) {
                 f.touch.cloth_pairs, 1e3 * f.clearance);
 }
 
-bool has_cloth_friction(ContactResponse r) { return r == ContactResponse::penalty || r == ContactResponse::impulse; }
+std::string cloth_friction_sentence(const DrapeFacts& f) {
+    if (f.contact.response == ContactResponse::constraint)
+        return text("friction of cloth on cloth was left out (%d pairs touch)", f.touch.cloth_pairs);
+    if (f.friction.cloth <= 0)
+        return text("friction of cloth on cloth was left out: its coefficient is 0 (%d pairs touch)", f.touch.cloth_pairs);
+    return text("of cloth on cloth with coefficient %.3g (%d pairs touch)", f.friction.cloth, f.touch.cloth_pairs);
+}
 
 std::string friction_sentence(const DrapeFacts& f, int nodes) {
     if (f.contact.response == ContactResponse::rigid)
         return text("cloth was welded to what it touches, whatever friction would bear (%d of %d nodes are held, with "
                     "%.3g N in all)",
                     f.touch.touching_nodes, nodes, f.touch.press);
-    if (f.friction <= 0)
-        return text("friction was left out: its coefficient is 0 (%d of %d nodes touch the body)",
-                    f.touch.touching_nodes, nodes);
+    const std::string cloth = cloth_friction_sentence(f);
+    if (f.friction.body <= 0)
+        return text("friction on the body was left out: its coefficient is 0 (%d of %d nodes touch the body); ",
+                    f.touch.touching_nodes, nodes) +
+               cloth;
     return text("Coulomb friction with coefficient %.3g was modelled between cloth and body, which touch at %d "
-                "of %d nodes with %.3g N in all; friction of cloth on cloth was %s (%d pairs touch)",
-                f.friction, f.touch.touching_nodes, nodes, f.touch.press,
-                has_cloth_friction(f.contact.response) ? "modelled with the same" : "left out", f.touch.cloth_pairs);
+                "of %d nodes with %.3g N in all; ",
+                f.friction.body, f.touch.touching_nodes, nodes, f.touch.press) +
+           cloth;
 }
 
 std::string response_sentence(const DrapeFacts& f) {

@@ -34,7 +34,7 @@ TouchFacts count_touching(const Contact& contact, const Points& x);
 struct DrapeFacts {
     TouchFacts touch;
     ContactReport contact;
-    double friction = 0;
+    FrictionCoefficients friction;
     double clearance = 0;            ///< m
     std::vector<HookFacts> hooks;
     std::vector<double> drawn_in;    ///< m, per level: how far the body was drawn in before it grew back

@@ -177,11 +177,13 @@ DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabri
     DrapeRun run{.staging = staging, .avatar = avatar.body, .fabrics = fabrics, .options = options};
     run.result.residual = std::numeric_limits<double>::infinity();
     run.result.tolerance = options.tolerance;
-    run.result.friction = options.friction;
+    run.result.friction = {options.friction, options.cloth_friction};
     run.iterations_left = options.max_iterations;
     for (const Fabric& f : fabrics) {
         run.density = std::max(run.density, f.density);
-        if (options.friction < 0) run.result.friction = std::max(run.result.friction, f.friction);
+        FrictionCoefficients& friction = run.result.friction;
+        if (options.friction < 0) friction.body = std::max(friction.body, f.friction);
+        if (options.cloth_friction < 0) friction.cloth = std::max(friction.cloth, f.cloth_friction);
     }
     if (!start_again(run)) sew_and_drape(run);
     if (run.stopped) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "draping/contact/friction.h"
 #include "draping/contact/response_kind.h"
 #include "draping/landmarks.h"
 #include "draping/measure.h"
@@ -27,7 +28,8 @@ struct DrapeProgress {
 struct DrapeOptions {
     double tolerance = 1e-3;        ///< residual to reach; see DrapeResult::residual
     double clearance = 0.5e-3;      ///< m, distance from the body below which contact acts
-    double friction = -1;           ///< Coulomb coefficient on the body; negative: the fabric's
+    double friction = -1;           ///< Coulomb coefficient on the body; negative: the largest of the fabrics'
+    double cloth_friction = -1;     ///< of cloth on cloth; the same
     double gravity = 9.81;          ///< m/s2, along -y
     /// What levels come to rest with. Placing and sewing always have the barrier, so that they start without crossings.
     ContactResponse contact = ContactResponse::barrier;
@@ -77,7 +79,7 @@ struct DrapeResult {
     /// max(node's weight, a tenth of the mean node's weight).
     double residual = 0; ///< infinity when nothing was settled
     double tolerance = 0;
-    double friction = 0;
+    FrictionCoefficients friction;
     BarrierReport barrier;
     ContactReport contact;
     std::vector<LevelReport> levels;

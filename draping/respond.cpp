@@ -22,7 +22,8 @@ constexpr ContactOptions no_contact{{1, 0, 0}, {1, 0, 0}, false};
 ResponseOptions response_options(const DrapeRun& run, const ClothProblem& problem) {
     ResponseOptions o;
     o.thickness = run.contact_options().body.distance;
-    o.body_friction = o.cloth_friction = run.result.friction;
+    o.body_friction = run.result.friction.body;
+    o.cloth_friction = run.result.friction.cloth;
     o.stiffness = repulsion;
     if (run.options.contact != ContactResponse::penalty) return o;
     double mass = 0;

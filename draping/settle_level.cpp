@@ -75,7 +75,15 @@ void note_facts(DrapeRun& run, const ClothProblem& problem, const TouchFacts& to
     f.inner_gap = seam_gap_max(run.garment, run.x);
 }
 
-/// Tells when cloth that is too short round the body, or that the body could not grow back in, has had time to slide
+/// Whether all of the cloth is below all of the body, which it has slid off: it would fall for ever.
+bool fell_off(const DrapeRun& run) {
+    double top = -std::numeric_limits<double>::infinity(), sole = -top;
+    for (const Vec3& p : run.x) top = std::max(top, p.y());
+    for (const Vec3& p : run.body.points) sole = std::min(sole, p.y());
+    return !run.body.points.empty() && top < sole;
+}
+
+/// Tells when cloth has fallen off, or when cloth that is too short round the body, or that the body could not grow back in, has had time to slide
 /// to where it fits and has not: no limit however hard makes it longer, but takes thousands of iterations over it.
 struct TightWatch {
     const DrapeRun& run;
@@ -83,6 +91,7 @@ struct TightWatch {
 
     bool gives_up(int iteration) {
         if (iteration == 0 || iteration % tight_every) return false;
+        if (fell_off(run)) return true;
         const double last = missing;
         missing = find_tightness(run.garment, run.x, run.fabrics).missing;
         return !run.grown || (missing > too_tight && missing > (1 - tight_gain) * last);
@@ -191,7 +200,7 @@ void settle_level(DrapeRun& run) {
     if (run.facts.restarted) passes = {{1, most_iterations, false}};
     if (acting.hooks.size() > kept.size()) {
         passes.insert(passes.end() - 1, {1, 100, true});
-        problem.friction.coefficient = 0;
+        problem.friction.coefficient = problem.cloth_friction.coefficient = 0;
     }
     SettleResult r;
     TightWatch tight{run};

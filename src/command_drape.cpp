@@ -163,6 +163,13 @@ void add_drape(CLI::App& app, Command& chosen) {
         ->type_name("NUMBER");
     add_length(command, "clearance", job.drape.clearance, 5e-5, 0.01,
                "Distance from the body below which contact acts");
+    const auto add_friction = [&command](const std::string& name, double& coefficient, const std::string& between) {
+        command.add_option(name, coefficient, "Coulomb coefficient " + between + " (default: the largest of the fabrics')")
+            ->check(CLI::Range(0.0, 10.0).description(""))
+            ->type_name("NUMBER");
+    };
+    add_friction("--friction", job.drape.friction, "between cloth and body");
+    add_friction("--cloth-friction", job.drape.cloth_friction, "between cloth and cloth");
     command
         .add_option_function<std::string>(
             "--contact", [&job](const std::string& name) { job.drape.contact = contact_response(name); },

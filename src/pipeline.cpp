@@ -86,7 +86,7 @@ std::string input_hash(const DrapeJob& job) {
     hash.add(std::string("contact ") + to_string(job.drape.contact) + '\n');
     for (const double value :
          {job.form.height, job.form.bust, job.form.waist, job.form.hip, job.edge_length, job.drape.tolerance,
-          job.drape.clearance, job.drape.friction, job.drape.gravity})
+          job.drape.clearance, job.drape.friction, job.drape.cloth_friction, job.drape.gravity})
         hash.add(std::to_string(value) + ' ');
     return hash.text();
 }

@@ -81,13 +81,14 @@ Eigen::VectorXd carried(const std::vector<Anchor>& anchors, const TriMesh& body,
 }
 
 void carry_places(Friction& friction, const std::vector<Anchor>& anchors, const TriMesh& body, const Points& moved) {
-    for (std::size_t i = 0; i < friction.force.size(); ++i) {
-        if (!(friction.force[i] > 0)) continue;
+    for (std::size_t i = 0; i < friction.ties.size(); ++i) {
+        Tie& tie = friction.ties[i];
+        if (!(tie.force > 0)) continue;
         const Triangle& t = body.triangles[anchors[i].triangle];
         const Mat3 turn = axes(moved, t) * axes(body.points, t).transpose();
         const Vec3 from = at(body.points, t, anchors[i].corner), to = at(moved, t, anchors[i].corner);
-        friction.place[i] = to + turn * (friction.place[i] - from);
-        friction.normal[i] = turn * friction.normal[i];
+        tie.place = to + turn * (tie.place - from);
+        tie.normal = turn * tie.normal;
     }
 }
 

@@ -25,7 +25,7 @@ std::vector<Anchor> find_anchors(const Points& x, const TriMesh& body);
 Eigen::VectorXd carried(const std::vector<Anchor>& anchors, const TriMesh& body, const Points& motion,
                         const EdgeTable& edges, const std::vector<char>& pinned);
 
-/// The places at which friction holds nodes, and the normals there, turned and moved along with the body's triangle
+/// The places at which friction on the body holds nodes, and the normals there, turned and moved along with the body's triangle
 /// beside each from `body` to `moved`.
 void carry_places(Friction& friction, const std::vector<Anchor>& anchors, const TriMesh& body, const Points& moved);
 

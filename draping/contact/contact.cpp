@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <tuple>
 
 namespace toile {
 
@@ -533,6 +534,21 @@ Points Contact::body_forces(const std::vector<ActivePair>& active) const {
             if (p.p[k] < nodes_) force[p.p[k]] -= slope * a.geometry.weight[k] * a.geometry.normal;
     }
     return force;
+}
+
+std::vector<PairForce> Contact::cloth_forces(const std::vector<ActivePair>& active) const {
+    const Stopwatch::Lap lap(clock_);
+    std::vector<PairForce> forces;
+    for (const ActivePair& a : active) {
+        const ContactPair& p = pairs_[a.pair];
+        if (p.with_body) continue;
+        const double press = -p.weight * a.fade.value * barrier(p).slope(a.geometry.d);
+        if (press > 0) forces.push_back({p.p, a.geometry.weight, p.edge_edge, press * a.geometry.normal});
+    }
+    std::sort(forces.begin(), forces.end(), [](const PairForce& a, const PairForce& b) {
+        return std::tie(a.edge_edge, a.point) < std::tie(b.edge_edge, b.point);
+    });
+    return forces;
 }
 
 int Contact::widen(Points& x) {

@@ -58,6 +58,14 @@ struct ActivePair {
     ParallelFade fade;
 };
 
+/// With what a pair of cloth and cloth presses.
+struct PairForce {
+    std::array<int, 4> point{};
+    std::array<double, 4> weight{}; ///< of the nearest places; `weight` times the force acts on each node
+    bool edge_edge = false;
+    Vec3 force = Vec3::Zero();      ///< N
+};
+
 class Contact {
 public:
     Contact(ContactCloth cloth, const TriMesh& body, const ContactOptions& options);
@@ -98,6 +106,9 @@ public:
 
     /// Force of the body's barrier on every node, N.
     Points body_forces(const std::vector<ActivePair>& active) const;
+
+    /// Of every active pair of cloth and cloth that presses, sorted by `edge_edge` and `point`.
+    std::vector<PairForce> cloth_forces(const std::vector<ActivePair>& active) const;
 
     /// Pairs nearer than their floor, or touching: none for a start that the barrier can take.
     std::vector<ContactPair> violations(const Points& x);

@@ -25,6 +25,7 @@ Fabric poplin() {
     f.bend_twist = 2.9 * micro;
     f.thickness = 0.25 * milli;
     f.friction = 0.30;
+    f.cloth_friction = 0.30;
     f.limit_warp = 0.02;
     f.limit_weft = 0.03;
     f.limit_shear = 25 * degree;
@@ -46,6 +47,7 @@ Fabric denim() {
     f.bend_twist = 33 * micro;
     f.thickness = 0.6 * milli;
     f.friction = 0.30;
+    f.cloth_friction = 0.30;
     f.limit_warp = 0.015;
     f.limit_weft = 0.025;
     f.limit_shear = 20 * degree;
@@ -67,6 +69,7 @@ Fabric silk() {
     f.bend_twist = 1.3 * micro;
     f.thickness = 0.12 * milli;
     f.friction = 0.25;
+    f.cloth_friction = 0.30;
     f.limit_warp = 0.02;
     f.limit_weft = 0.03;
     f.limit_shear = 35 * degree;
@@ -88,6 +91,7 @@ Fabric wool() {
     f.bend_twist = 7.0 * micro;
     f.thickness = 0.57 * milli;
     f.friction = 0.35;
+    f.cloth_friction = 0.30;
     f.limit_warp = 0.03;
     f.limit_weft = 0.04;
     f.limit_shear = 32 * degree;
@@ -109,6 +113,7 @@ Fabric linen() {
     f.bend_twist = 10 * micro;
     f.thickness = 0.4 * milli;
     f.friction = 0.30;
+    f.cloth_friction = 0.30;
     f.limit_warp = 0.015;
     f.limit_weft = 0.02;
     f.limit_shear = 28 * degree;
@@ -131,6 +136,7 @@ Fabric leather() {
     f.bend_poisson = 0.3;
     f.thickness = 0.8 * milli;
     f.friction = 0.45;
+    f.cloth_friction = 0.30;
     f.limit_warp = f.limit_weft = 0.05;
     f.limit_shear = 6 * degree;
     f.source = "bending: median and upper quartile at 0.6-0.9 kg/m2, Feng 2022; stretch: 6 MPa at 0.8 mm; shear: "
@@ -152,6 +158,7 @@ Fabric jersey() {
     f.bend_twist = 3.7 * micro;
     f.thickness = 0.6 * milli;
     f.friction = 0.35;
+    f.cloth_friction = 0.30;
     f.limit_warp = 0.25;
     f.limit_weft = 0.5;
     f.limit_shear = 45 * degree;
@@ -174,6 +181,7 @@ Fabric rib() {
     f.bend_twist = 10 * micro;
     f.thickness = 1.0 * milli;
     f.friction = 0.40;
+    f.cloth_friction = 0.30;
     f.limit_warp = 0.35;
     f.limit_weft = 0.8;
     f.limit_shear = 45 * degree;

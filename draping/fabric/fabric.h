@@ -27,6 +27,7 @@ struct Fabric {
     double compression = 0.5;  ///< stiffness under compression, as a share of that under tension, (0, 1]
     double thickness = 0;      ///< m
     double friction = 0;       ///< Coulomb coefficient on the body
+    double cloth_friction = 0; ///< and of the cloth on itself
     double limit_warp = 0;     ///< largest stretch, e.g. 0.01
     double limit_weft = 0;
     double limit_shear = 0;    ///< locking angle of shear, rad

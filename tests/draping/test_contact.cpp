@@ -168,37 +168,38 @@ TEST_CASE("contact: pairs that may come within reach are all that do") {
 
 TEST_CASE("friction: limit and stick") {
     Friction f = friction_at({{0, 0, 0}, {0.1, 0, 0}, {0, 0, 0.1}}, 0.3);
-    f.normal[1] = Vec3(0.6, 0.8, 0);
-    f.force = {1e-3, 2e-3, 0};
+    f.ties[1].normal = Vec3(0.6, 0.8, 0);
+    f.ties[0].force = 1e-3;
+    f.ties[1].force = 2e-3;
     const Points x{{0.5e-4, 0.2, 0.3e-4}, {0.1007, 0.01, 0.0003}, {1, 1, 1}};
     CHECK(friction_force(f, x, 0).norm() < 0.3 * 1e-3);
     CHECK(friction_force(f, x, 1).norm() == Approx(0.995 * 0.3 * 2e-3)); // it slides
-    CHECK(std::abs(friction_force(f, x, 1).dot(f.normal[1])) < 1e-12);
+    CHECK(std::abs(friction_force(f, x, 1).dot(f.ties[1].normal)) < 1e-12);
     CHECK(friction_force(f, x, 2).norm() == 0);
 }
 
 TEST_CASE("friction follows a normal force up and down, and less each time") {
     Friction f = friction_at({Vec3::Zero()}, 0.3);
     const Points slid{{1e-3, 0, 0}};
-    f.force[0] = 1;
+    f.ties[0].force = 1;
     follow(f, slid, 0, 1.1, true);
-    CHECK(f.force[0] == 1.1); // it slides for want of it
-    double share = friction_force(f, slid, 0).norm() / (0.3 * f.force[0]);
+    CHECK(f.ties[0].force == 1.1); // it slides for want of it
+    double share = friction_force(f, slid, 0).norm() / (0.3 * f.ties[0].force);
     CHECK(share == Approx(0.995));
     for (int turn = 0; turn < 6; ++turn) {
         follow(f, slid, 0, 1, true);
-        CHECK(f.force[0] == 1);
-        const double next = friction_force(f, slid, 0).norm() / (0.3 * f.force[0]);
+        CHECK(f.ties[0].force == 1);
+        const double next = friction_force(f, slid, 0).norm() / (0.3 * f.ties[0].force);
         CHECK(next <= share);
         share = next;
         follow(f, slid, 0, 1.1, true);
     }
     CHECK(share == Approx(0.95));
-    CHECK(f.force[0] == 1); // no longer
+    CHECK(f.ties[0].force == 1); // no longer
     // What hardly moves needs no more than it has.
     const Points near{{1e-5, 0, 0}};
     Friction held = friction_at({Vec3::Zero()}, 0.3);
-    held.force[0] = 1;
+    held.ties[0].force = 1;
     follow(held, near, 0, 2, true);
-    CHECK(held.force[0] == 1);
+    CHECK(held.ties[0].force == 1);
 }

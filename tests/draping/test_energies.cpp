@@ -150,11 +150,12 @@ void add_friction(std::vector<EnergyCase>& cases) {
         // At its place, near it, about to give way, just sliding, far gone; off the body by some.
         for (double slips : {0.0, 1e-10, 0.3, 0.999, 1.001, 1.5, 2.999, 3.001, 40.0, 0.5}) {
             const Vec3 n = random.vec3().normalized(), t = n.cross(random.vec3()).normalized();
-            f.place.push_back(random.vec3(0.1));
-            f.normal.push_back(n);
-            f.force.push_back(x.size() < 9 ? random.in(1e-4, 1e-2) : 0);
-            f.kept.push_back(seed == 1 ? 0.995 : 0.95);
-            x.push_back(f.place.back() + slips * f.slip * t + random.in(-1e-3, 1e-3) * n);
+            Tie& tie = f.ties.emplace_back(friction_at({random.vec3(0.1)}, 0).ties[0]);
+            tie.point.fill(int(x.size()));
+            tie.normal = n;
+            tie.force = x.size() < 9 ? random.in(1e-4, 1e-2) : 0;
+            tie.kept = seed == 1 ? 0.995 : 0.95;
+            x.push_back(tie.place + slips * f.slip * t + random.in(-1e-3, 1e-3) * n);
         }
         const TestedEnergy energy = block_energy(
             "friction", [f](const Points& at) { return value(f, at); },
@@ -164,6 +165,31 @@ void add_friction(std::vector<EnergyCase>& cases) {
             });
         cases.push_back({energy, {"sliding by more and more", x, 1e-10}, false});
     }
+}
+
+void add_cloth_friction(std::vector<EnergyCase>& cases) {
+    Random random(3);
+    const Points x = shaken(Points(6, Vec3(0.01, 0.02, 0.03)), 0.01, 9);
+    Friction f;
+    f.coefficient = 0.3;
+    const std::array<std::array<double, 4>, 3> weights{{{1, -0.2, -0.5, -0.3}, {1, -0.6, 0, -0.4}, {0.7, 0.3, -0.1, -0.9}}};
+    int turn = 0;
+    for (double slips : {0.0, 0.3, 0.999, 1.5, 2.999, 40.0}) {
+        const Vec3 n = random.vec3().normalized(), t = n.cross(random.vec3()).normalized();
+        Tie& tie = f.ties.emplace_back();
+        for (int k = 0; k < 4; ++k) tie.point[k] = (turn + k) % 6;
+        tie.weight = weights[turn++ % 3];
+        tie.normal = n;
+        tie.force = random.in(1e-4, 1e-2);
+        tie.place = held_vector(tie, x) - slips * f.slip * t + random.in(-1e-3, 1e-3) * n;
+    }
+    const TestedEnergy energy = block_energy(
+        "friction of cloth", [f](const Points& at) { return value(f, at); },
+        [f](const Points& at, VectorXd& g) { add_gradient(f, at, g); },
+        [f](const Points& at, HessianKind kind, BlockMatrix& h) {
+            CHECK(add_hessian(f, at, kind == HessianKind::exact, h));
+        });
+    cases.push_back({energy, {"sliding by more and more", x, 1e-10}, false});
 }
 
 // ---- springs
@@ -233,7 +259,7 @@ void add_problem(std::vector<EnergyCase>& cases) {
     Random random(4);
     for (const Vec2& p : mesh().points)
         x.push_back(Vec3(p.x(), 0.003 + 0.002 * std::sin(40 * p.x()), p.y() - 0.05) + random.vec3(5e-4));
-    problem->rest_here(shaken(x, 1e-4, 8), 0.4);
+    problem->rest_here(shaken(x, 1e-4, 8), {0.4, 0.2});
     problem->arrive(x);
     const TestedEnergy energy{
         "cloth problem", [=](const Points& at) { return problem->value(at); },
@@ -258,6 +284,7 @@ std::vector<EnergyCase> every_energy() {
     add_sheet(cases);
     add_contacts(cases);
     add_friction(cases);
+    add_cloth_friction(cases);
     add_springs(cases);
     add_elastic(cases);
     add_problem(cases);

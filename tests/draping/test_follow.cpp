@@ -36,11 +36,11 @@ struct OnTable {
     explicit OnTable(TriMesh on, double friction) : body(std::move(on)) {
         Points x;
         for (const Vec2& p : sheet.points) x.push_back({p.x() - 0.05, 0.45e-3, 0.05 - p.y()});
-        ClothScene scene(garment, body, x, fabrics[0], friction);
+        ClothScene scene(garment, body, x, fabrics[0], {friction});
         REQUIRE(scene.settle_to(1e-3, 200));
         dressed.garment = garment;
         dressed.state.positions = scene.x;
-        dressed.friction = friction;
+        dressed.friction.body = friction;
         staging.levels.push_back({0.02, garment, scene.x});
     }
 
@@ -83,17 +83,15 @@ TEST_CASE("cloth on a body that moves as a whole is carried as a whole, and so a
     CHECK(dx.head<3>().norm() == 0);
     CHECK((dx.segment<3>(3) - by).norm() < 1e-4);
 
-    Friction friction;
-    friction.place = x;
-    friction.normal.assign(x.size(), Vec3::UnitY());
-    friction.force.assign(x.size(), 1.0);
+    Friction friction = friction_at(x, 0.3);
+    for (Tie& tie : friction.ties) tie.force = 1;
     const double angle = 40 * degree;
     carry_places(friction, anchors, body, turned(body.points, angle));
     const Points expected = turned(x, angle);
     const Vec3 normal = turned({Vec3::UnitY()}, angle)[0];
     for (std::size_t i = 0; i < x.size(); ++i) {
-        CHECK((friction.place[i] - expected[i]).norm() < 1e-12);
-        CHECK((friction.normal[i] - normal).norm() < 1e-12);
+        CHECK((friction.ties[i].place - expected[i]).norm() < 1e-12);
+        CHECK((friction.ties[i].normal - normal).norm() < 1e-12);
     }
 }
 

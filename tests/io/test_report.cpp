@@ -26,7 +26,7 @@ DrapeResult result_of(const test::Skirt& skirt) {
     r.status = DrapeStatus::converged;
     r.residual = 5e-4;
     r.tolerance = 1e-3;
-    r.friction = 0.3;
+    r.friction = {0.3, 0.25};
     r.barrier = {5e-4, 1e6};
     r.levels = {{0.02, 100, 20, 5, 0.5}, {0.01, 400, 12, 3, 0.7}};
     r.seconds = {{"sew", 0.5}, {"settle", 0.3}, {"settle", 0.4}};

@@ -28,7 +28,7 @@ struct ClothScene {
     std::unique_ptr<ClothProblem> problem;
     Cholesky factor;
 
-    ClothScene(Garment g, TriMesh on, Points start, const Fabric& fabric, double friction)
+    ClothScene(Garment g, TriMesh on, Points start, const Fabric& fabric, const FrictionCoefficients& friction)
         : garment(std::move(g)), body(std::move(on)), x(std::move(start)),
           problem(std::make_unique<ClothProblem>(garment, PanelFabrics{fabric}, body, barriers_at(0.5e-3, fabric.density))) {
         problem->gravity = 9.81;

@@ -185,7 +185,7 @@ inline FlungEnd fling(FlungScene& s, int most_iterations, bool self = true) {
     contact.self = self;
     ClothProblem problem(s.garment, s.fabrics, s.body, contact);
     problem.gravity = 9.81;
-    problem.rest_here(s.x, 0.3);
+    problem.rest_here(s.x, {0.3});
     Cholesky factor;
     SettleOptions settling;
     settling.tolerance = 1;

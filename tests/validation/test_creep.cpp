@@ -42,7 +42,7 @@ TEST_CASE("a skirt that friction holds up does not creep", "[validation]") {
     SettleOptions options;
     REQUIRE(settle(problem, s.x, factor, options).end == SettleEnd::settled);
     problem.hooks.clear();
-    problem.rest_here(s.x, 0.35, true);
+    problem.rest_here(s.x, {0.35}, true);
     REQUIRE(settle(problem, s.x, factor, options).end == SettleEnd::settled);
     double held = 0, weight = 0;
     for (int i = 0; i < problem.points(); ++i) {
@@ -58,7 +58,7 @@ TEST_CASE("a skirt that friction holds up does not creep", "[validation]") {
     CHECK(farthest(longer, s.x) < 1e-4);
 
     Points again = s.x;
-    problem.rest_here(again, 0.35, true);
+    problem.rest_here(again, {0.35}, true);
     options.tolerance = 1e-5;
     CHECK(settle(problem, again, factor, options).end == SettleEnd::settled);
     CHECK(farthest(again, s.x) < 1e-4);

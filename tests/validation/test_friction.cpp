@@ -62,7 +62,7 @@ Slide slide(double friction, double angle, double bend, TriMesh board) {
     Cholesky factor;
     ClothProblem level(garment, {plain_fabric(2000, bend)}, board, barriers());
     level.gravity = 9.81;
-    level.rest_here(x, 1);
+    level.rest_here(x, {1});
     REQUIRE(settle(level, x, factor, options).end == SettleEnd::settled);
 
     x = turned(x, angle);
@@ -70,7 +70,7 @@ Slide slide(double friction, double angle, double bend, TriMesh board) {
     const Points start = x;
     ClothProblem tilted(garment, {plain_fabric(2000, bend)}, board, barriers());
     tilted.gravity = 9.81;
-    tilted.rest_here(x, friction);
+    tilted.rest_here(x, {friction});
     Slide s;
     const Vec3 down(std::cos(angle), -std::sin(angle), 0);
     options.tolerance = 1e-3;

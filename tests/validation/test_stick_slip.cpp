@@ -77,7 +77,7 @@ Tip let_go(const Scene& scene, double friction) {
     options.tolerance = 1e-4;
     REQUIRE(settle(problem, x, factor, options).end == SettleEnd::settled);
     problem.hooks.clear();
-    problem.rest_here(x, friction, true);
+    problem.rest_here(x, {friction}, true);
     const Points start = x;
     options.max_iterations = 100;
     const SettleResult last = settle(problem, x, factor, options);

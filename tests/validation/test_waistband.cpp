@@ -118,7 +118,7 @@ Held let_go(const Fabric& fabric, double friction, double angle, double widens, 
                        pressed); // near enough: the tension presses many times the weight
     const Points start = b.x;
     problem.hooks.clear();
-    problem.rest_here(b.x, friction, true);
+    problem.rest_here(b.x, {friction}, true);
     options.max_iterations = 100;
     options.tolerance = 1e-5;
     h.settled = settle(problem, b.x, factor, options).end == SettleEnd::settled;

@@ -32,6 +32,7 @@ TEST_CASE("every preset is a cloth that can exist", "[fabric]") {
         CHECK((f.bend_poisson >= 0 && f.bend_poisson < 0.5));
         CHECK((f.compression > 0 && f.compression <= 1));
         CHECK((f.friction > 0.1 && f.friction < 0.7));
+        CHECK((f.cloth_friction > 0.1 && f.cloth_friction < 0.7));
         CHECK((f.limit_warp >= 0.01 && f.limit_weft >= f.limit_warp));
         CHECK((f.limit_shear > 0.05 && f.limit_shear < 0.8));
         CHECK(f.source.size() > 20);

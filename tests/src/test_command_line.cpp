@@ -54,6 +54,8 @@ TEST_CASE("a command line that cannot be used has exit code 1 and one sentence")
         {"drape", "a.json", "-o", "a.obj", "--edge-length", "10km"},
         {"drape", "a.json", "-o", "a.obj", "--edge-length", "1m"},
         {"drape", "a.json", "-o", "a.obj", "--clearance", "0.5"},
+        {"drape", "a.json", "-o", "a.obj", "--friction", "-0.1"},
+        {"drape", "a.json", "-o", "a.obj", "--cloth-friction", "much"},
         {"drape", "a.json", "-o", "a.obj", "--tolerance", "0"},
         {"drape", "a.json", "-o", "a.obj", "--tolerance", "small"},
         {"drape", "a.json", "-o", "a.obj", "--fabric", "tweed"},

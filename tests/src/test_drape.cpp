@@ -10,6 +10,8 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 using namespace toile;
 using namespace toile::test;
 using Catch::Contains;
@@ -62,6 +64,11 @@ TEST_CASE("one command makes a garment, its report and its picture, and they agr
     CHECK(report["status"] == "converged");
     CHECK(report["residual"] <= report["tolerance"]);
     CHECK(report["threads"] == 1);
+    CHECK(report["cloth_friction"] == 0.3);
+    const auto says_so = [](const nlohmann::json& d) {
+        return d.get<std::string>().find("of cloth on cloth with coefficient 0.3") != std::string::npos;
+    };
+    CHECK(std::any_of(report["decisions"].begin(), report["decisions"].end(), says_so));
     CHECK_THAT(report["blas"].get<std::string>(), Contains("OpenBLAS"));
     CHECK(report["ease"]["bust"]["ease"].get<double>() > 0);
     CHECK(report["seconds"]["total"].get<double>() >= report["seconds"]["sew"].get<double>());
@@ -130,12 +137,14 @@ TEST_CASE("every response to contact drapes, and the report says what it promise
     for (const auto& response : responses) {
         INFO(response.name);
         const Run r = run_toile({"drape", tee, "--edge-length", "60mm", "--contact", response.name, "--max-seconds",
-                                 "20s", "--json"});
+                                 "20s", "--friction", "0.35", "--cloth-friction", "0.2", "--json"});
         const nlohmann::json report = nlohmann::json::parse(r.out);
         INFO(report["where"].get<std::string>());
         CHECK(Schema("report.schema.json").complaints(r.out) == "");
         CHECK(report["contact"]["response"] == response.name);
         CHECK(report["contact"]["guarantee"] == response.guarantee);
+        CHECK(report["friction"] == 0.35);
+        CHECK(report["cloth_friction"] == 0.2);
         CHECK(report["seam_gap_max"] == 0.0);
         const int crossings = report["intersections"]["cloth_avatar"].get<int>() +
                               report["intersections"]["cloth_cloth"].get<int>();

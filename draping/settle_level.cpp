@@ -75,16 +75,18 @@ void note_facts(DrapeRun& run, const ClothProblem& problem, const TouchFacts& to
     f.inner_gap = seam_gap_max(run.garment, run.x);
 }
 
-/// Whether all of the cloth is below all of the body, which it has slid off: it would fall for ever.
+/// Whether cloth that nothing else holds is all below the body, which it has slid off: it would fall for ever.
 bool fell_off(const DrapeRun& run) {
+    if (!run.held.empty() || !pinned_places(run.staging, run.level, run.garment).empty()) return false;
     double top = -std::numeric_limits<double>::infinity(), sole = -top;
     for (const Vec3& p : run.x) top = std::max(top, p.y());
     for (const Vec3& p : run.body.points) sole = std::min(sole, p.y());
     return !run.body.points.empty() && top < sole;
 }
 
-/// Tells when cloth has fallen off, or when cloth that is too short round the body, or that the body could not grow back in, has had time to slide
-/// to where it fits and has not: no limit however hard makes it longer, but takes thousands of iterations over it.
+/// Tells when cloth has fallen off, or when cloth that is too short round the body, or that the body could not grow
+/// back in, has had time to slide to where it fits and has not: no limit however hard makes it longer, but takes
+/// thousands of iterations over it.
 struct TightWatch {
     const DrapeRun& run;
     double missing = std::numeric_limits<double>::infinity(); ///< m, when looked at last

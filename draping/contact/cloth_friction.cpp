@@ -15,7 +15,7 @@ constexpr int sweeps = 300;
 
 template <class Pair> auto key(const Pair& p) { return std::tie(p.edge_edge, p.point); }
 
-/// Axes that turn with a pair; false when it has none.
+/// Axes that turn with a pair; false for edges that are all but parallel, which hardly press.
 bool axes(const Points& x, const Tie& tie, Mat3& m) {
     const auto& p = tie.point;
     const Vec3 along = (tie.edge_edge ? x[p[1]] - x[p[0]] : x[p[2]] - x[p[1]]).normalized();
@@ -26,11 +26,10 @@ bool axes(const Points& x, const Tie& tie, Mat3& m) {
     return true;
 }
 
-/// How a pair has turned; false when it cannot be told, or is too much for a tie.
+/// How a pair has turned, as far as it can be told; false when it is too much for a tie.
 bool turn_of(const Tie& tie, const Points& before, const Points& x, Mat3& turn) {
     Mat3 old, now;
-    if (!axes(before, tie, old) || !axes(x, tie, now)) return false;
-    turn = now * old.transpose();
+    turn = axes(before, tie, old) && axes(x, tie, now) ? Mat3(now * old.transpose()) : Mat3::Identity();
     return 0.5 * (turn.trace() - 1) > least_cosine;
 }
 

@@ -191,19 +191,6 @@ Eigen::Matrix<double, 3, 6> morley(const Mat2& edges) {
     return b;
 }
 
-Mat3 bend_moduli(const Fabric& fabric) {
-    Mat3 d = Mat3::Zero();
-    d(0, 0) = fabric.bend_weft;
-    d(1, 1) = fabric.bend_warp;
-    d(0, 1) = d(1, 0) = fabric.bend_poisson * std::sqrt(fabric.bend_warp * fabric.bend_weft);
-    d(2, 2) = 4 * fabric.bend_twist;
-    if (!(d(0, 0) > 0 && d(1, 1) > 0 && d(2, 2) > 0 && std::abs(fabric.bend_poisson) < 1))
-        throw std::invalid_argument(
-            "fabric \"" + fabric.name +
-            "\": bend_warp, bend_weft and bend_twist must be positive and bend_poisson below 1");
-    return d;
-}
-
 double rest_area(const Mat2& edges) {
     return 0.5 * std::abs(edges.determinant());
 }
@@ -302,6 +289,19 @@ Vec3 force_at(const Eigen::SparseMatrix<double>& stiffness, const Points& x, int
 }
 
 } // namespace
+
+Mat3 bend_moduli(const Fabric& fabric) {
+    Mat3 d = Mat3::Zero();
+    d(0, 0) = fabric.bend_weft;
+    d(1, 1) = fabric.bend_warp;
+    d(0, 1) = d(1, 0) = fabric.bend_poisson * std::sqrt(fabric.bend_warp * fabric.bend_weft);
+    d(2, 2) = 4 * fabric.bend_twist;
+    if (!(d(0, 0) > 0 && d(1, 1) > 0 && d(2, 2) > 0 && std::abs(fabric.bend_poisson) < 1))
+        throw std::invalid_argument(
+            "fabric \"" + fabric.name +
+            "\": bend_warp, bend_weft and bend_twist must be positive and bend_poisson below 1");
+    return d;
+}
 
 Bending make_bending(const Garment& garment, const std::vector<Fabric>& fabrics) {
     std::vector<Mat3> moduli;

@@ -37,8 +37,11 @@ struct Bending {
     std::vector<BendElement> compact;
 };
 
-/// `fabrics` has one entry per panel. Throws std::invalid_argument for a fabric whose bending is not positive
-/// definite.
+/// Moduli of the energy per area over the second derivatives (uu, vv, uv). Throws std::invalid_argument for a fabric
+/// whose bending is not positive definite.
+Mat3 bend_moduli(const Fabric& fabric);
+
+/// `fabrics` has one entry per panel. Throws as bend_moduli() does.
 Bending make_bending(const Garment& garment, const std::vector<Fabric>& fabrics);
 
 double bend_value(const Bending& bending, const Points& x);

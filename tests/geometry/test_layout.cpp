@@ -18,7 +18,7 @@ using Strings = std::vector<std::string>;
 
 /// What may be included stands to the left.
 const Strings modules = {"geometry", "patterns", "sewing", "draping", "io", "src"};
-const Strings draping_rooms = {"algebra", "fabric", "energy", "contact", "solve", "rest"};
+const Strings draping_rooms = {"algebra", "fabric", "energy", "nonconforming", "contact", "solve", "rest"};
 
 /// Libraries that cost minutes of compiling or belong behind one door, by the start of their headers, and the
 /// files that may include them.

@@ -13,8 +13,6 @@ namespace toile {
 
 namespace {
 
-using Slope = Eigen::Matrix<double, 3, 2>; ///< of position by (weft, warp)
-
 constexpr double ring_weight = 0.25;  // how much rather a slope uses the edge's own triangles than those around them
 constexpr double largest_weight = 3;  // on a regular mesh 0.5 inside, 2 at a border
 constexpr int most_rings = 3;
@@ -76,10 +74,10 @@ Mat2 turn_of(const Garment& garment, const Laid& laid) {
     return svd.matrixU() * svd.matrixV().transpose();
 }
 
-Gradient gradient_of(const Garment& garment, const Laid& laid, double factor = 1) {
+Gradient gradient_of(const Garment& garment, const Laid& laid) {
     const auto gradients = corner_gradients(laid.corner);
     Gradient g;
-    for (int k = 0; k < 3; ++k) g.add(garment.edges.of_triangle[laid.triangle][k], -2 * factor * gradients.col(k));
+    for (int k = 0; k < 3; ++k) g.add(garment.edges.of_triangle[laid.triangle][k], -2 * gradients.col(k));
     return g;
 }
 
@@ -212,33 +210,24 @@ struct Assembly {
         put(f);
     }
 
-    /// Slope that triangle `t` has at `at`, both in the plane in which it is laid, times `factor`.
-    void add_slope_at(const Laid& t, const Vec2& at, double factor, Gradient& jump) const {
-        const Mat2 turn = turn_of(garment, t);
-        jump.add<2>(Mat2(factor * Mat2::Identity()), gradient_of(garment, t));
-        const Vec2 step = turn.transpose() * (at - t.centroid());
-        Eigen::Matrix<double, 2, 4> along;
-        along << step.x() * turn, step.y() * turn;
-        jump.add<4>(factor * along, seconds[t.triangle]);
-    }
-
-    void put_jump(int e) {
-        const int t = garment.edges.incident[garment.edges.first[e]], k = side_of(garment, t, e);
-        const Laid own = own_plane(garment, t);
-        const Vec2 at = own.middle(k);
-        const double length = (own.corner[(k + 1) % 3] - own.corner[(k + 2) % 3]).norm();
+    /// What the shared slope of an edge leaves of the slope that the triangle has there by its own gradient and second
+    /// derivative. Both triangles see half of the jump between them, and so does the cloth at a clamp or border of that to
+    /// its mirror image.
+    void put_jump(int t, int k) {
         Laid other;
         const bool inner = across(t, k, other);
-        if (!inner && !clamp_at[e]) return;
+        const Laid own = own_plane(garment, t);
         const double d = inner ? 0.5 * (stiffness(t) + stiffness(other.triangle)) : stiffness(t);
-        const double over = inner ? area(t) + area(other.triangle) : area(t);
-        const double factor = length * std::sqrt(jump_stiffness * d / over);
+        const double both = area(t) + (inner ? area(other.triangle) : area(t));
+        const double length = (own.corner[(k + 1) % 3] - own.corner[(k + 2) % 3]).norm();
+        const double factor = length * std::sqrt(2 * jump_stiffness * d / both);
         Gradient jump;
-        add_slope_at(own, at, factor, jump);
-        if (clamp_at[e])
-            jump.offset -= factor * clamp_at[e]->slope.transpose();
-        else
-            add_slope_at(other, at, -factor, jump);
+        jump.add<2>(factor * Mat2::Identity(), gradient_of(garment, own));
+        jump.add<2>(-factor * Mat2::Identity(), slopes[t][k]);
+        const Vec2 step = own.middle(k) - own.centroid();
+        Eigen::Matrix<double, 2, 4> along;
+        along << step.x() * Mat2::Identity(), step.y() * Mat2::Identity();
+        jump.add<4>(factor * along, seconds[t]);
         put(jump);
     }
 };
@@ -254,7 +243,8 @@ MidpointBending make_midpoint_bending(const Garment& garment, const std::vector<
     assembly.find_slopes();
     assembly.find_seconds();
     for (int t = 0; t < assembly.triangles(); ++t) assembly.put_curvature(t, moduli[garment.panel_of_triangle[t]]);
-    for (int e = 0; e < garment.edges.size(); ++e) assembly.put_jump(e);
+    for (int t = 0; t < assembly.triangles(); ++t)
+        for (int k = 0; k < 3; ++k) assembly.put_jump(t, k);
 
     MidpointBending bending;
     const int rows = int(assembly.offsets.size());

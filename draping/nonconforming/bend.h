@@ -10,7 +10,9 @@
 
 namespace toile {
 
-/// An edge at which cloth is held at a slope. Its midpoint is to be held as well.
+/// An edge, of one or two triangles, at which cloth is held at a slope. Its midpoint is to be held as well, best by a
+/// spring (add_spring) as stiff as the mean diagonal entry of the stiffness: midpoints that are fixed along a line can
+/// make lengths depend on each other, and some meshes then have no balance of finite tensions.
 struct Clamp {
     int edge = 0;
     /// Derivative of position by (weft, warp) of the first triangle at the edge: two orthonormal columns.
@@ -24,10 +26,10 @@ struct Clamp {
 /// weighted sum of the gradients of the triangles around the edge, of the smallest weights that are exact where gradients
 /// are linear, and both triangles at the edge see the same; so the second derivative H = 1/A sum |e| g_e n_e^T is exact
 /// on quadratics, and its integral depends on slopes at the border alone (the patch test). Either without the other does
-/// not converge. H alone leaves triangles free to turn against each other, so the jump of G + H (x - centroid) at the
-/// middle of every edge is held with stiffness D |e|^2 / (A1 + A2), which a quadratic does not feel. Jumps of G alone
-/// (English and Bridson's energy) are felt by curved cloth as well and make it a third too stiff; see
-/// docs/nonconforming.md. Rest angles are not taken into account, and an edge of three or more triangles is a hinge.
+/// not converge. H alone leaves triangles free to turn against each other, so what g_e leaves of G + H (x - centroid) at
+/// the middle of each edge of each triangle is held with stiffness 2 D |e|^2 / (A1 + A2), which a quadratic does not feel.
+/// Jumps of G alone (English and Bridson's energy) are felt by curved cloth as well; see docs/nonconforming.md. A smooth
+/// surface is represented by its means over edges, not its values in their middles. Rest angles are not taken into account, and an edge of three or more triangles is a hinge.
 struct MidpointBending {
     Eigen::SparseMatrix<double> rows;                  ///< scaled by the roots of areas and moduli
     Eigen::Matrix<double, Eigen::Dynamic, 3> offset;   ///< what clamps contribute

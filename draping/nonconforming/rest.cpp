@@ -14,6 +14,8 @@ constexpr int most_restores = 30;
 constexpr double restore_rate = 0.7; // misfit may shrink no slower, or the step was too long for its linearisation
 constexpr double sufficient = 1e-4;  // of the decrease that the slope promises
 constexpr double first_shift = 1e-7, shift_growth = 8, shift_decay = 0.2, most_shift = 1e3; // of the mean diagonal
+constexpr double rounding = 1e-15;
+constexpr double near_enough = 0.01; // strain
 constexpr double restoring_shift = 1e-9;
 
 VectorXd product(const Eigen::SparseMatrix<double>& a, const VectorXd& x) {
@@ -74,6 +76,14 @@ struct Descent {
         return strain <= options.strain;
     }
 
+    /// Onto the lengths to begin with: near them by one linearisation, from farther off by as many as it takes.
+    bool start(Points& x) {
+        const Points given = x;
+        if (strain_of(saddle.bars(), misfit(saddle.bars(), x)) < near_enough && factorise(x) && restore(x)) return true;
+        x = given;
+        return make_isometric(saddle, problem, x, options.strain);
+    }
+
     /// Change of energy + tension . misfit from x by `step`: the energy is quadratic, so that nothing cancels.
     double change(const VectorXd& g, const VectorXd& step, const VectorXd& tension, const VectorXd& before,
                   const Points& after) const {
@@ -85,7 +95,9 @@ struct Descent {
     double advance(Points& x, const VectorXd& g, const VectorXd& c, const VectorXd& d, const VectorXd& tension) {
         VectorXd balance = g;
         add_tensions(saddle.bars(), x, tension, balance);
-        const double slope = balance.dot(d), noise = 1e-14 * g.norm() * d.norm();
+        const double slope = balance.dot(d);
+        // Of the sum of tension . misfit, whose terms are rounded with the coordinates.
+        const double noise = rounding * (tension.norm() * flat(x).cwiseAbs().maxCoeff() + g.norm() * d.norm());
         for (double t = within_turn(saddle.bars(), d, options.max_turn); t > 1e-6; t *= 0.5) {
             Points trial = x;
             flat(trial) += t * d;
@@ -135,7 +147,7 @@ IsometricResult settle_isometric(Saddle& saddle, const IsometricProblem& problem
     const int before = saddle.factorisations();
     Descent descent{saddle, problem, options, problem.stiffness.diagonal().mean(), tension};
     if (descent.lambda.size() != Eigen::Index(problem.bars.size())) descent.lambda.setZero(problem.bars.size());
-    const bool isometric = make_isometric(saddle, problem, x, options.strain);
+    const bool isometric = descent.start(x);
     VectorXd d, y;
     for (;; ++result.iterations) {
         const VectorXd bent = product(problem.stiffness, flat(x)), g = bent - flat(problem.load);
@@ -143,9 +155,7 @@ IsometricResult settle_isometric(Saddle& saddle, const IsometricProblem& problem
         add_tensions(saddle.bars(), x, descent.lambda, balance);
         const VectorXd c = misfit(saddle.bars(), x);
         result.strain = strain_of(saddle.bars(), c);
-        const double scale = std::max({longest(flat(problem.load), problem.held), longest(bent, problem.held),
-                                       longest(balance - g, problem.held), 1e-300});
-        result.residual = longest(balance, problem.held) / scale;
+        result.residual = longest(balance, problem.held);
         result.energy = flat(x).dot(0.5 * bent - flat(problem.load));
         if (!isometric) {
             result.end = IsometricEnd::not_isometric;
@@ -153,7 +163,6 @@ IsometricResult settle_isometric(Saddle& saddle, const IsometricProblem& problem
         }
         if (result.residual <= options.tolerance && result.strain <= options.strain) {
             result.end = IsometricEnd::settled;
-            result.stable = saddle.factorise(problem.stiffness, 0, x, descent.lambda);
             break;
         }
         if (result.iterations >= options.max_iterations) break;
@@ -177,6 +186,10 @@ IsometricResult settle_isometric(Saddle& saddle, const IsometricProblem& problem
     result.tension = descent.lambda;
     result.factorisations = saddle.factorisations() - before;
     return result;
+}
+
+bool is_stable(Saddle& saddle, const IsometricProblem& problem, const Points& x, const VectorXd& tension) {
+    return saddle.factorise(problem.stiffness, 0, x, tension);
 }
 
 } // namespace toile

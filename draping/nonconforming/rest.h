@@ -22,8 +22,8 @@ void add_spring(IsometricProblem& problem, const std::vector<std::pair<int, doub
                 double stiffness);
 
 struct IsometricOptions {
-    double tolerance = 1e-8;   ///< residual at rest
-    double strain = 1e-10;     ///< of any bar at the end
+    double tolerance = 1e-9;   ///< N, residual at rest; a millionth of the mean midpoint's weight is a good choice
+    double strain = 1e-7;      ///< of any bar at the end
     int max_iterations = 200;
     double max_turn = 0.5;     ///< rad, that a bar turns by at most in one iteration
 };
@@ -37,10 +37,9 @@ enum class IsometricEnd {
 
 struct IsometricResult {
     IsometricEnd end = IsometricEnd::iterations;
-    double residual = 0; ///< largest force without answer on a point over the largest force of one kind on any
+    double residual = 0; ///< N, largest force on a point that nothing answers
     double strain = 0;   ///< largest of a bar
     double energy = 0;   ///< J, of the problem
-    bool stable = false; ///< the second derivative along isometric motions is positive: a minimum, no saddle
     int iterations = 0, factorisations = 0;
     Eigen::VectorXd tension; ///< N per bar
 };
@@ -52,5 +51,8 @@ bool make_isometric(Saddle& saddle, const IsometricProblem& problem, Points& x, 
 /// Moves x to rest. It need not keep the lengths to begin with. `tension`, when it has the right size, is a first guess.
 IsometricResult settle_isometric(Saddle& saddle, const IsometricProblem& problem, Points& x,
                              const IsometricOptions& options = {}, const Eigen::VectorXd& tension = {});
+
+/// The second derivative at a state of rest is positive along isometric motions: a minimum, no saddle.
+bool is_stable(Saddle& saddle, const IsometricProblem& problem, const Points& x, const Eigen::VectorXd& tension);
 
 } // namespace toile

@@ -236,7 +236,7 @@ TEST_CASE("ghost nodes go where contact puts them", "[validation][nonconforming]
     options.time_step = 2e-3;
     const double floor = -0.01;
     Points nodes = ghost_nodes(motion.cloth.midpoints, motion.x);
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 100; ++i) {
         MotionStep step = try_step(motion, Vec3(0, 0, -9.81), {}, options);
         REQUIRE(step.end == IsometricEnd::settled);
         Points expected = nodes;
@@ -249,7 +249,8 @@ TEST_CASE("ghost nodes go where contact puts them", "[validation][nonconforming]
         nodes = ghost_nodes(motion.cloth.midpoints, motion.x);
         CHECK(farthest(nodes, expected) < 1e-12);
     }
-    CHECK(largest_strain(motion.cloth.bars, motion.x) < 1e-6);
-    CHECK(kinetic_energy(motion) < 1e-8);
-    for (const Vec3& p : nodes) CHECK(p.z() == Approx(floor).margin(1e-5));
+    // Each step ends with a correction that the next one makes good: weight acts on midpoints, the floor on nodes.
+    CHECK(largest_strain(motion.cloth.bars, motion.x) < 5e-5);
+    CHECK(kinetic_energy(motion) < 1e-6);
+    for (const Vec3& p : nodes) CHECK(p.z() == Approx(floor).margin(1e-9));
 }

@@ -87,16 +87,16 @@ void cantilever() {
 }
 
 /// The sheet of hang_sheet(), which hangs by two corners.
-struct Sheet {
+struct HungCloth {
     FlatMesh mesh;
     Garment garment;
     Points start;
     std::vector<GhostSpring> pins;
 };
 
-Sheet sheet(double edge) {
+HungCloth sheet(double edge) {
     const double side = 0.5, apart = 0.8;
-    Sheet s;
+    HungCloth s;
     s.mesh = jittered_rectangle(side, side, edge, 0.25, 1);
     s.garment = garment_of(s.mesh);
     Random random(1);
@@ -116,7 +116,7 @@ const Vec3 gravity(0, -9.81, 0);
 
 void rest() {
     for (double edge : {0.0162, 0.0080}) {
-        const Sheet s = sheet(edge);
+        const HungCloth s = sheet(edge);
         auto start = Clock::now();
         const NonconformingCloth cloth = make_nonconforming_cloth(s.garment, {sheet_fabric(0.15, 1e-5)});
         const IsometricProblem problem = problem_of(cloth, gravity, {}, s.pins);
@@ -154,7 +154,7 @@ void rest() {
 
 void step() {
     for (double edge : {0.0162, 0.0080}) {
-        const Sheet s = sheet(edge);
+        const HungCloth s = sheet(edge);
         Motion motion =
             start_motion(make_nonconforming_cloth(s.garment, {sheet_fabric(0.15, 1e-5)}), s.garment, s.start, {}, s.pins);
         MotionOptions options;

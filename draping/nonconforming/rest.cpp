@@ -14,6 +14,8 @@ constexpr int most_restores = 30;
 constexpr double restore_rate = 0.7; // misfit may shrink no slower, or the step was too long for its linearisation
 constexpr double sufficient = 1e-4;  // of the decrease that the slope promises
 constexpr double first_shift = 1e-7, shift_growth = 8, shift_decay = 0.2, most_shift = 1e3; // of the mean diagonal
+constexpr int longest_wait = 7;
+constexpr double too_stiff = 1.5;    // gain over what was promised from which longer steps are looked for
 constexpr double rounding = 1e-15;
 constexpr double near_enough = 0.01; // strain
 constexpr double restoring_shift = 1e-9;
@@ -52,11 +54,23 @@ struct Descent {
     double diagonal;
     VectorXd lambda;
     double shift = 0;
+    int wait = 0, last_wait = 0; ///< iterations until the exact second derivative is tried again
 
+    /// The exact second derivative where it is positive; where it is not, as in cloth that is pushed together, that without
+    /// the pushing bars. The exact one is then tried again after ever longer waits.
     bool factorise(const Points& x) {
+        if (wait == 0) {
+            if (saddle.factorise(problem.stiffness, shift * diagonal, x, lambda)) {
+                last_wait = 0;
+                return true;
+            }
+            wait = last_wait = std::min(2 * last_wait + 1, longest_wait);
+        }
+        --wait;
+        const VectorXd pulls = lambda.cwiseMax(0);
         for (;; shift = std::max(shift_growth * shift, first_shift)) {
             if (shift > most_shift) return false;
-            if (saddle.factorise(problem.stiffness, shift * diagonal, x, lambda)) return true;
+            if (saddle.factorise(problem.stiffness, shift * diagonal, x, pulls)) return true;
         }
     }
 
@@ -102,8 +116,17 @@ struct Descent {
             Points trial = x;
             flat(trial) += t * d;
             if (!restore(trial)) continue;
-            const VectorXd step = flat(trial) - flat(x);
-            if (change(g, step, tension, c, trial) > sufficient * t * slope + noise) continue;
+            double gain = -change(g, flat(trial) - flat(x), tension, c, trial);
+            if (-gain > sufficient * t * slope + noise) continue;
+            for (double further = 2 * t; gain > too_stiff * -slope * t * (1 - t / 2) && further < 9; further *= 2) {
+                Points beyond = x;
+                flat(beyond) += further * d;
+                if (within_turn(saddle.bars(), further * d, options.max_turn) < 1 || !restore(beyond)) break;
+                const double more = -change(g, flat(beyond) - flat(x), tension, c, beyond);
+                if (more <= gain) break;
+                gain = more;
+                trial = std::move(beyond);
+            }
             x = std::move(trial);
             return t;
         }

@@ -17,12 +17,17 @@ using namespace toile::test;
 namespace {
 
 /// Of all threads together: other work on the machine does not count.
-double cpu_seconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
-double seconds_since(double start) { return cpu_seconds() - start; }
+double cpu_seconds() {
+    return double(std::clock()) / CLOCKS_PER_SEC;
+}
+double seconds_since(double start) {
+    return cpu_seconds() - start;
+}
 
 /// Rivals: energies of jumps of the gradient, with clamps that are jumps to the mirror image.
 enum class Jumps {
-    across, ///< the Laplacian of the element with lumped mass: derivatives across the edge, 3 |e|^2 / (A1 + A2)
+    across, ///< the Laplacian of the element with lumped mass: derivatives across the edge, 3 |e|^2 / (A1 +
+            ///< A2)
     whole   ///< the whole jump, |e|^2 / (A1 + A2)
 };
 
@@ -37,7 +42,8 @@ MidpointBending jump_bending(const Garment& garment, Jumps jumps) {
         const Vec2 along = (garment.uv[b] - garment.uv[a]).normalized();
         const double length = (garment.uv[b] - garment.uv[a]).norm();
         double areas = 0;
-        for (int i = 0; i < count; ++i) areas += 0.5 * std::abs(garment.rest.edges[garment.edges.incident[first + i]].determinant());
+        for (int i = 0; i < count; ++i)
+            areas += 0.5 * std::abs(garment.rest.edges[garment.edges.incident[first + i]].determinant());
         // A jump to the mirror image is twice that to the clamp, of two areas, and one of its halves is ours.
         const double factor = length * std::sqrt((jumps == Jumps::across ? 3.0 : 1.0) / areas);
         for (int component = 0; component < (jumps == Jumps::across ? 1 : 2); ++component) {
@@ -59,7 +65,8 @@ MidpointBending jump_bending(const Garment& garment, Jumps jumps) {
     bending.rows.resize(offsets.size(), garment.edges.size());
     bending.rows.setFromTriplets(entries.begin(), entries.end());
     bending.offset.resize(offsets.size(), 3);
-    for (std::size_t i = 0; i < offsets.size(); ++i) bending.offset.row(i) = offsets[i];
+    for (std::size_t i = 0; i < offsets.size(); ++i)
+        bending.offset.row(i) = offsets[i];
     bending.stiffness = bending.rows.transpose() * bending.rows;
     return bending;
 }
@@ -69,12 +76,13 @@ void cantilever() {
         for (MeshKind kind : {MeshKind::aligned, MeshKind::alternating, MeshKind::unstructured}) {
             const char* of_kind[] = {"aligned", "alternating", "unstructured"};
             std::printf("%s, %s:", name, of_kind[int(kind)]);
-            for (const auto& [gamma, slope] : {std::pair{1.0, 0.12456176644}, {10.0, 1.06680232}, {100.0, 5.8881046}})
+            for (const auto& [gamma, slope] :
+                 {std::pair{1.0, 0.12456176644}, {10.0, 1.06680232}, {100.0, 5.8881046}})
                 for (int along : {14, 28, 56}) {
                     const FlatMesh mesh = strip_mesh(kind, 1, 0.25, along);
                     const Garment garment = garment_of(mesh);
-                    NonconformingCloth cloth =
-                        make_nonconforming_cloth(garment, {sheet_fabric(1, 1)}, level_clamps(edges_at_wall(mesh, garment)));
+                    NonconformingCloth cloth = make_nonconforming_cloth(
+                        garment, {sheet_fabric(1, 1)}, level_clamps(edges_at_wall(mesh, garment)));
                     if (name[0] != 's')
                         cloth.bending = jump_bending(garment, name[0] == 'L' ? Jumps::across : Jumps::whole);
                     const Cantilever c = hang(mesh, gamma, cloth);
@@ -134,20 +142,24 @@ void rest() {
         const IsometricResult r = settle_isometric(saddle, problem, x, options);
         const double settled = seconds_since(start);
         double drop = 0;
-        for (const Vec3& p : ghost_nodes(cloth.midpoints, x)) drop = std::max(drop, -p.y());
-        std::printf("%d nodes, %zu midpoints: made in %.2f s, %s in %.2f s, end %d after %d iterations, %d factorisations, "
+        for (const Vec3& p : ghost_nodes(cloth.midpoints, x))
+            drop = std::max(drop, -p.y());
+        std::printf("%d nodes, %zu midpoints: made in %.2f s, %s in %.2f s, end %d after %d iterations, %d "
+                    "factorisations, "
                     "%.2f s (%.0f ms per iteration); drop %.1f mm, strain %.1e\n",
-                    s.garment.node_count, x.size(), made, isometric ? "isometric" : "NOT ISOMETRIC", projected, int(r.end),
-                    r.iterations, r.factorisations, settled, 1e3 * settled / std::max(1, r.iterations), 1e3 * drop,
+                    s.garment.node_count, x.size(), made, isometric ? "isometric" : "NOT ISOMETRIC",
+                    projected, int(r.end), r.iterations, r.factorisations, settled,
+                    1e3 * settled / std::max(1, r.iterations), 1e3 * drop,
                     largest_triangle_strain(s.garment, x));
         std::fflush(stdout);
         for (double stiffness : {1e3, 1e5}) {
             start = cpu_seconds();
             const HungSheet h = hang_sheet(edge, 1, {stiffness})[0];
             const double seconds = seconds_since(start);
-            std::printf("  default equilibrium, %.0e N/m: %s after %d iterations, %.2f s (%.0f ms per iteration); drop %.1f mm\n",
-                        stiffness, h.settled ? "settled" : "NOT SETTLED", h.iterations, seconds, 1e3 * seconds / h.iterations,
-                        1e3 * h.drop);
+            std::printf("  default equilibrium, %.0e N/m: %s after %d iterations, %.2f s (%.0f ms per "
+                        "iteration); drop %.1f mm\n",
+                        stiffness, h.settled ? "settled" : "NOT SETTLED", h.iterations, seconds,
+                        1e3 * seconds / h.iterations, 1e3 * h.drop);
             std::fflush(stdout);
         }
     }
@@ -156,8 +168,8 @@ void rest() {
 void step() {
     for (double edge : {0.025, 0.0162, 0.0080}) {
         const HungCloth s = sheet(edge);
-        Motion motion =
-            start_motion(make_nonconforming_cloth(s.garment, {sheet_fabric(0.15, 1e-5)}), s.garment, s.start, {}, s.pins);
+        Motion motion = start_motion(make_nonconforming_cloth(s.garment, {sheet_fabric(0.15, 1e-5)}),
+                                     s.garment, s.start, {}, s.pins);
         MotionOptions options;
         options.time_step = 5e-3;
         int iterations = 0, factorisations = 0, failed = 0;
@@ -170,10 +182,11 @@ void step() {
             failed += done.end != IsometricEnd::settled;
             finish_step(motion, options);
         }
-        std::printf("%d nodes: %.0f ms per step of %.0f ms, %.1f iterations, %.1f factorisations, strain %.1e%s\n",
-                    s.garment.node_count, 1e3 * seconds_since(start) / steps, 1e3 * options.time_step,
-                    double(iterations) / steps, double(factorisations) / steps,
-                    largest_triangle_strain(s.garment, motion.x), failed ? ", NOT ALL SETTLED" : "");
+        std::printf(
+            "%d nodes: %.0f ms per step of %.0f ms, %.1f iterations, %.1f factorisations, strain %.1e%s\n",
+            s.garment.node_count, 1e3 * seconds_since(start) / steps, 1e3 * options.time_step,
+            double(iterations) / steps, double(factorisations) / steps,
+            largest_triangle_strain(s.garment, motion.x), failed ? ", NOT ALL SETTLED" : "");
         std::fflush(stdout);
     }
 }

@@ -8,15 +8,18 @@
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
+#include <string>
 
 namespace toile {
 
 namespace {
 
-constexpr double ring_weight = 0.25;  // how much rather a slope uses the edge's own triangles than those around them
-constexpr double largest_weight = 3;  // on a regular mesh 0.5 inside, 2 at a border
+constexpr double ring_weight =
+    0.25; // how much rather a slope uses the edge's own triangles than those around them
+constexpr double largest_weight = 3; // on a regular mesh 0.5 inside, 2 at a border
 constexpr int most_rings = 3;
-constexpr double jump_stiffness = 1;  // in units of D |e|^2 / (A1 + A2)
+constexpr double jump_stiffness = 1; // in units of D |e|^2 / (A1 + A2)
 
 Eigen::Matrix<double, 2, 3> corner_gradients(const std::array<Vec2, 3>& corner) {
     Mat2 edges;
@@ -30,17 +33,18 @@ Eigen::Matrix<double, 2, 3> corner_gradients(const std::array<Vec2, 3>& corner) 
 }
 
 /// A linear map from midpoints to `Rows` numbers per coordinate, and what clamps add to it.
-template <int Rows>
-struct Functional {
+template <int Rows> struct Functional {
     using Column = Eigen::Matrix<double, Rows, 1>;
     std::map<int, Column> of;
     Eigen::Matrix<double, Rows, 3> offset = Eigen::Matrix<double, Rows, 3>::Zero();
 
-    void add(int midpoint, const Column& weight) { of.emplace(midpoint, Column::Zero()).first->second += weight; }
+    void add(int midpoint, const Column& weight) {
+        of.emplace(midpoint, Column::Zero()).first->second += weight;
+    }
 
-    template <int More>
-    void add(const Eigen::Matrix<double, Rows, More>& map, const Functional<More>& f) {
-        for (const auto& [midpoint, weight] : f.of) add(midpoint, map * weight);
+    template <int More> void add(const Eigen::Matrix<double, Rows, More>& map, const Functional<More>& f) {
+        for (const auto& [midpoint, weight] : f.of)
+            add(midpoint, map * weight);
         offset += map * f.offset;
     }
 };
@@ -77,7 +81,8 @@ Mat2 turn_of(const Garment& garment, const Laid& laid) {
 Gradient gradient_of(const Garment& garment, const Laid& laid) {
     const auto gradients = corner_gradients(laid.corner);
     Gradient g;
-    for (int k = 0; k < 3; ++k) g.add(garment.edges.of_triangle[laid.triangle][k], -2 * gradients.col(k));
+    for (int k = 0; k < 3; ++k)
+        g.add(garment.edges.of_triangle[laid.triangle][k], -2 * gradients.col(k));
     return g;
 }
 
@@ -86,9 +91,10 @@ int side_of(const Garment& garment, int t, int e) {
     return int(std::find(sides.begin(), sides.end(), e) - sides.begin());
 }
 
-/// Weights of the gradients of the triangles, the first `near` of which are preferred, exact at `at` where gradients are
-/// linear. Empty when there are none, or none that are small enough.
-std::vector<double> exact_weights(const std::vector<Laid>& triangles, int near, const Vec2& at, double length) {
+/// Weights of the gradients of the triangles, the first `near` of which are preferred, exact at `at` where
+/// gradients are linear. Empty when there are none, or none that are small enough.
+std::vector<double> exact_weights(const std::vector<Laid>& triangles, int near, const Vec2& at,
+                                  double length) {
     const int n = int(triangles.size());
     Eigen::MatrixXd conditions(3, n);
     Eigen::VectorXd share = Eigen::VectorXd::Constant(n, ring_weight);
@@ -102,11 +108,13 @@ std::vector<double> exact_weights(const std::vector<Laid>& triangles, int near, 
     solve.compute(conditions);
     const Eigen::VectorXd scaled = solve.solve(Vec3(1, 0, 0));
     const Eigen::VectorXd weights = scaled.cwiseProduct(share);
-    if ((conditions * scaled - Vec3(1, 0, 0)).norm() > 1e-9 || weights.cwiseAbs().maxCoeff() > largest_weight) return {};
+    if ((conditions * scaled - Vec3(1, 0, 0)).norm() > 1e-9 || weights.cwiseAbs().maxCoeff() > largest_weight)
+        return {};
     return {weights.begin(), weights.end()};
 }
 
-/// Where the line from centroid to centroid is nearest to the middle of the edge: the best that two triangles can do.
+/// Where the line from centroid to centroid is nearest to the middle of the edge: the best that two triangles
+/// can do.
 std::vector<double> line_weights(const std::vector<Laid>& own, const Vec2& at) {
     if (own.size() < 2) return {1};
     const Vec2 along = own[1].centroid() - own[0].centroid();
@@ -127,7 +135,8 @@ Gradient shared_slope(const Garment& garment, int t, int k) {
     for (int ring = 0; ring < most_rings && weights.empty(); ++ring) {
         unfold_ring(garment, unfolding);
         triangles.clear();
-        for (const auto& placed : unfolding.triangles) triangles.push_back(laid(placed));
+        for (const auto& placed : unfolding.triangles)
+            triangles.push_back(laid(placed));
         weights = exact_weights(triangles, near, at, length);
     }
     if (weights.empty()) {
@@ -143,7 +152,7 @@ Gradient shared_slope(const Garment& garment, int t, int k) {
 struct Assembly {
     const Garment& garment;
     const std::vector<Fabric>& fabrics;
-    std::vector<const Clamp*> clamp_at;              ///< per edge
+    std::vector<const Clamp*> clamp_at;               ///< per edge
     std::vector<std::array<Gradient, 3>> slopes = {}; ///< per triangle and side, in the triangle's own plane
     std::vector<Second> seconds = {};                 ///< per triangle, in its own plane
     std::vector<Eigen::Triplet<double>> entries = {};
@@ -170,7 +179,8 @@ struct Assembly {
         for (int e = 0; e < garment.edges.size(); ++e)
             for (int i = garment.edges.first[e]; i < garment.edges.first[e + 1]; ++i) {
                 const int t = garment.edges.incident[i], k = side_of(garment, t, e);
-                if (i > garment.edges.first[e] && neighbour(garment, t, k) >= 0) continue; // the first has done it
+                if (i > garment.edges.first[e] && neighbour(garment, t, k) >= 0)
+                    continue; // the first has done it
                 Gradient slope = clamp_at[e] ? Gradient{} : shared_slope(garment, t, k);
                 if (clamp_at[e]) slope.offset = clamp_at[e]->slope.transpose();
                 Laid other;
@@ -194,11 +204,12 @@ struct Assembly {
         }
     }
 
-    template <int Rows>
-    void put(const Functional<Rows>& f) {
+    template <int Rows> void put(const Functional<Rows>& f) {
         for (const auto& [midpoint, weight] : f.of)
-            for (int r = 0; r < Rows; ++r) entries.emplace_back(int(offsets.size()) + r, midpoint, weight[r]);
-        for (int r = 0; r < Rows; ++r) offsets.push_back(f.offset.row(r));
+            for (int r = 0; r < Rows; ++r)
+                entries.emplace_back(int(offsets.size()) + r, midpoint, weight[r]);
+        for (int r = 0; r < Rows; ++r)
+            offsets.push_back(f.offset.row(r));
     }
 
     void put_curvature(int t, const Mat3& moduli) {
@@ -210,9 +221,9 @@ struct Assembly {
         put(f);
     }
 
-    /// What the shared slope of an edge leaves of the slope that the triangle has there by its own gradient and second
-    /// derivative. Both triangles see half of the jump between them, and so does the cloth at a clamp or border of that to
-    /// its mirror image.
+    /// What the shared slope of an edge leaves of the slope that the triangle has there by its own gradient
+    /// and second derivative. Both triangles see half of the jump between them, and so does the cloth at a
+    /// clamp or border of that to its mirror image.
     void put_jump(int t, int k) {
         Laid other;
         const bool inner = across(t, k, other);
@@ -237,21 +248,31 @@ struct Assembly {
 MidpointBending make_midpoint_bending(const Garment& garment, const std::vector<Fabric>& fabrics,
                                       const std::vector<Clamp>& clamps) {
     std::vector<Mat3> moduli;
-    for (const Fabric& fabric : fabrics) moduli.push_back(bend_moduli(fabric));
+    for (const Fabric& fabric : fabrics)
+        moduli.push_back(bend_moduli(fabric));
     Assembly assembly{garment, fabrics, std::vector<const Clamp*>(garment.edges.size(), nullptr)};
-    for (const Clamp& clamp : clamps) assembly.clamp_at[clamp.edge] = &clamp;
+    for (const Clamp& clamp : clamps) {
+        if (clamp.edge < 0 || clamp.edge >= garment.edges.size())
+            throw std::invalid_argument("edge " + std::to_string(clamp.edge) +
+                                        " of a clamp does not exist: there are " +
+                                        std::to_string(garment.edges.size()));
+        assembly.clamp_at[clamp.edge] = &clamp;
+    }
     assembly.find_slopes();
     assembly.find_seconds();
-    for (int t = 0; t < assembly.triangles(); ++t) assembly.put_curvature(t, moduli[garment.panel_of_triangle[t]]);
     for (int t = 0; t < assembly.triangles(); ++t)
-        for (int k = 0; k < 3; ++k) assembly.put_jump(t, k);
+        assembly.put_curvature(t, moduli[garment.panel_of_triangle[t]]);
+    for (int t = 0; t < assembly.triangles(); ++t)
+        for (int k = 0; k < 3; ++k)
+            assembly.put_jump(t, k);
 
     MidpointBending bending;
     const int rows = int(assembly.offsets.size());
     bending.rows.resize(rows, garment.edges.size());
     bending.rows.setFromTriplets(assembly.entries.begin(), assembly.entries.end());
     bending.offset.resize(rows, 3);
-    for (int i = 0; i < rows; ++i) bending.offset.row(i) = assembly.offsets[i];
+    for (int i = 0; i < rows; ++i)
+        bending.offset.row(i) = assembly.offsets[i];
     bending.stiffness = bending.rows.transpose() * bending.rows;
     return bending;
 }
@@ -260,10 +281,12 @@ namespace {
 
 using Coordinates = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-// From a point of the cloth: rows of gradients sum to zero, and far from the origin only differences are small.
+// From a point of the cloth: rows of gradients sum to zero, and far from the origin only differences are
+// small.
 Coordinates residuals(const MidpointBending& bending, const Points& x) {
     Coordinates from_first(x.size(), 3);
-    for (std::size_t i = 0; i < x.size(); ++i) from_first.row(i) = (x[i] - x[0]).transpose();
+    for (std::size_t i = 0; i < x.size(); ++i)
+        from_first.row(i) = (x[i] - x[0]).transpose();
     return bending.rows * from_first + bending.offset;
 }
 
@@ -277,7 +300,8 @@ Points bend_gradient(const MidpointBending& bending, const Points& x) {
     Points gradient(x.size());
     if (x.empty()) return gradient;
     const Coordinates g = bending.rows.transpose() * residuals(bending, x);
-    for (std::size_t i = 0; i < x.size(); ++i) gradient[i] = g.row(i);
+    for (std::size_t i = 0; i < x.size(); ++i)
+        gradient[i] = g.row(i);
     return gradient;
 }
 

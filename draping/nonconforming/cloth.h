@@ -15,8 +15,8 @@ struct NonconformingCloth {
     Bars bars;
 };
 
-/// Seams should be closed. `fabrics` has one entry per panel. Throws std::invalid_argument for a fabric without weight
-/// or whose bending is not positive definite, and for a triangle without area.
+/// Seams should be closed. `fabrics` has one entry per panel. Throws std::invalid_argument for a fabric
+/// without weight or whose bending is not positive definite, and for a triangle without area.
 NonconformingCloth make_nonconforming_cloth(const Garment& garment, const std::vector<Fabric>& fabrics,
                                             const std::vector<Clamp>& clamps = {});
 
@@ -28,7 +28,7 @@ struct GhostSpring {
 };
 
 /// Bending, gravity (m/s^2), forces on ghost nodes (N; empty: none) and springs; nothing is held.
-IsometricProblem problem_of(const NonconformingCloth& cloth, const Vec3& gravity, const Points& ghost_forces = {},
-                            const std::vector<GhostSpring>& springs = {});
+IsometricProblem problem_of(const NonconformingCloth& cloth, const Vec3& gravity,
+                            const Points& ghost_forces = {}, const std::vector<GhostSpring>& springs = {});
 
 } // namespace toile

@@ -14,9 +14,11 @@ Bars triangle_bars(const Garment& garment) {
         const Mat2& edges = garment.rest.edges[t];
         const std::array<Vec2, 3> side{edges.col(1) - edges.col(0), edges.col(1), edges.col(0)};
         if (std::abs(edges.determinant()) <= 1e-12 * side[0].squaredNorm())
-            throw std::invalid_argument("triangle " + std::to_string(t) + " has no area, so it cannot keep its shape");
+            throw std::invalid_argument("triangle " + std::to_string(t) +
+                                        " has no area, so it cannot keep its shape");
         const auto& e = garment.edges.of_triangle[t];
-        for (int k = 0; k < 3; ++k) bars.push_back({e[(k + 1) % 3], e[(k + 2) % 3], side[k].norm() / 2});
+        for (int k = 0; k < 3; ++k)
+            bars.push_back({e[(k + 1) % 3], e[(k + 2) % 3], side[k].norm() / 2});
     }
     return bars;
 }
@@ -34,7 +36,8 @@ Eigen::VectorXd misfit(const Bars& bars, const Points& x) {
 double largest_strain(const Bars& bars, const Points& x) {
     const Eigen::VectorXd c = misfit(bars, x);
     double most = 0;
-    for (std::size_t i = 0; i < bars.size(); ++i) most = std::max(most, std::abs(c[i]) / bars[i].length);
+    for (std::size_t i = 0; i < bars.size(); ++i)
+        most = std::max(most, std::abs(c[i]) / bars[i].length);
     return most;
 }
 
@@ -46,7 +49,8 @@ double largest_triangle_strain(const Garment& garment, const Points& midpoints) 
         now << 2 * (midpoints[e[0]] - midpoints[e[1]]), 2 * (midpoints[e[0]] - midpoints[e[2]]);
         const Eigen::Matrix<double, 3, 2> f = now * garment.rest.edges[t].inverse();
         const Mat2 square = f.transpose() * f;
-        const Vec2 stretch = Eigen::SelfAdjointEigenSolver<Mat2>(square).eigenvalues().cwiseMax(0).cwiseSqrt();
+        const Vec2 stretch =
+            Eigen::SelfAdjointEigenSolver<Mat2>(square).eigenvalues().cwiseMax(0).cwiseSqrt();
         most = std::max(most, (stretch - Vec2::Ones()).cwiseAbs().maxCoeff());
     }
     return most;

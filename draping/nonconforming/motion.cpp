@@ -5,6 +5,7 @@
 
 #include <numeric>
 #include <stdexcept>
+#include <string>
 
 namespace toile {
 
@@ -12,7 +13,8 @@ namespace {
 
 constexpr double immovable = 1e-10; // share of the mean mobility below which a ghost node cannot be moved
 
-/// Of (x - known) * rate = velocity and (velocity - known_velocity) * rate = acceleration at the end of a step.
+/// Of (x - known) * rate = velocity and (velocity - known_velocity) * rate = acceleration at the end of a
+/// step.
 struct Formula {
     double rate = 0; ///< 1/s
     Points known, known_velocity;
@@ -29,12 +31,20 @@ Formula formula_of(const Motion& m, double h) {
 }
 
 /// Inertia as a spring to where the midpoints would go without force; damping as one to where they come from.
-void add_inertia(const std::vector<double>& mass, const Formula& f, double damping, IsometricProblem& problem) {
+void add_inertia(const std::vector<double>& mass, const Formula& f, double damping,
+                 IsometricProblem& problem) {
     const double inertia = f.rate * f.rate, drag = damping * f.rate;
     for (std::size_t i = 0; i < mass.size(); ++i) {
         problem.stiffness.coeffRef(i, i) += mass[i] * (inertia + drag);
         problem.load[i] += mass[i] * ((inertia + drag) * f.known[i] + f.rate * f.known_velocity[i]);
     }
+}
+
+void need_nodes(const NonconformingCloth& cloth, const Points& given, const std::string& what) {
+    const auto nodes = cloth.midpoints.ghost.rows();
+    if (Eigen::Index(given.size()) != nodes)
+        throw std::invalid_argument(what + " are of " + std::to_string(given.size()) + " nodes, expected " +
+                                    std::to_string(nodes));
 }
 
 double mean_weight(const std::vector<double>& mass) {
@@ -53,7 +63,8 @@ Points velocity_change(const Motion& motion, const Points& change) {
     solver.compute(of_ghosts);
     using Coordinates = Eigen::Matrix<double, Eigen::Dynamic, 3>;
     Coordinates wanted(change.size(), 3);
-    for (std::size_t i = 0; i < change.size(); ++i) wanted.row(i) = change[i];
+    for (std::size_t i = 0; i < change.size(); ++i)
+        wanted.row(i) = change[i];
     Coordinates impulse = Coordinates::Zero(change.size(), 3);
     for (int refinement = 0; refinement < 3; ++refinement) {
         const Coordinates left = wanted - of_ghosts * impulse;
@@ -61,14 +72,16 @@ Points velocity_change(const Motion& motion, const Points& change) {
     }
     const Coordinates velocity = mobility.asDiagonal() * (ghost.transpose() * impulse);
     Points result(motion.x.size());
-    for (std::size_t e = 0; e < result.size(); ++e) result[e] = velocity.row(e);
+    for (std::size_t e = 0; e < result.size(); ++e)
+        result[e] = velocity.row(e);
     return result;
 }
 
 } // namespace
 
-Motion start_motion(NonconformingCloth cloth, const Garment& garment, const Points& nodes, const std::vector<char>& held,
-                    const std::vector<GhostSpring>& springs) {
+Motion start_motion(NonconformingCloth cloth, const Garment& garment, const Points& nodes,
+                    const std::vector<char>& held, const std::vector<GhostSpring>& springs) {
+    need_nodes(cloth, nodes, "start positions");
     Motion m;
     m.cloth = std::move(cloth);
     m.problem = problem_of(m.cloth, Vec3::Zero(), {}, springs);
@@ -82,13 +95,16 @@ Motion start_motion(NonconformingCloth cloth, const Garment& garment, const Poin
     return m;
 }
 
-MotionStep try_step(Motion& motion, const Vec3& gravity, const Points& ghost_forces, const MotionOptions& options) {
+MotionStep try_step(Motion& motion, const Vec3& gravity, const Points& ghost_forces,
+                    const MotionOptions& options) {
+    if (!ghost_forces.empty()) need_nodes(motion.cloth, ghost_forces, "forces");
     const double h = options.time_step;
     const Formula f = formula_of(motion, h);
     const std::vector<double>& mass = motion.cloth.midpoints.mass;
     IsometricProblem problem = motion.problem;
     const Points pushed = from_ghost_nodes(motion.cloth.midpoints, ghost_forces);
-    for (std::size_t i = 0; i < mass.size(); ++i) problem.load[i] += mass[i] * gravity + pushed[i];
+    for (std::size_t i = 0; i < mass.size(); ++i)
+        problem.load[i] += mass[i] * gravity + pushed[i];
     add_inertia(mass, f, options.damping, problem);
 
     motion.candidate = motion.x;
@@ -98,12 +114,15 @@ MotionStep try_step(Motion& motion, const Vec3& gravity, const Points& ghost_for
     newton.tolerance = options.tolerance * mean_weight(mass);
     newton.strain = options.strain;
     newton.max_iterations = options.max_iterations;
-    const IsometricResult r = settle_isometric(*motion.saddle, problem, motion.candidate, newton, motion.tension);
+    const IsometricResult r =
+        settle_isometric(*motion.saddle, problem, motion.candidate, newton, motion.tension);
     motion.tension = r.tension;
 
-    MotionStep step{r.end, r.iterations, r.factorisations, ghost_nodes(motion.cloth.midpoints, motion.candidate)};
+    MotionStep step{r.end, r.iterations, r.factorisations,
+                    ghost_nodes(motion.cloth.midpoints, motion.candidate)};
     const Points from = ghost_nodes(motion.cloth.midpoints, motion.x);
-    for (std::size_t i = 0; i < from.size(); ++i) step.ghost_velocity[i] = (step.ghost_velocity[i] - from[i]) / h;
+    for (std::size_t i = 0; i < from.size(); ++i)
+        step.ghost_velocity[i] = (step.ghost_velocity[i] - from[i]) / h;
     motion.candidate_velocity.resize(mass.size());
     for (std::size_t i = 0; i < mass.size(); ++i)
         motion.candidate_velocity[i] = f.rate * (motion.candidate[i] - f.known[i]);
@@ -119,9 +138,7 @@ void finish_step(Motion& motion, const MotionOptions& options) {
 }
 
 void finish_step(Motion& motion, const MotionOptions& options, const Points& ghost_velocity) {
-    if (int(ghost_velocity.size()) != int(motion.cloth.midpoints.ghost.rows()))
-        throw std::invalid_argument("corrected velocities are of " + std::to_string(ghost_velocity.size()) + " nodes, expected " +
-                                    std::to_string(motion.cloth.midpoints.ghost.rows()));
+    need_nodes(motion.cloth, ghost_velocity, "corrected velocities");
     const double h = options.time_step;
     const Points from = ghost_nodes(motion.cloth.midpoints, motion.x);
     Points change = ghost_nodes(motion.cloth.midpoints, motion.candidate);
@@ -149,7 +166,8 @@ double kinetic_energy(const Motion& motion) {
 
 Vec3 momentum(const Motion& motion) {
     Vec3 sum = Vec3::Zero();
-    for (std::size_t i = 0; i < motion.x.size(); ++i) sum += motion.cloth.midpoints.mass[i] * motion.velocity[i];
+    for (std::size_t i = 0; i < motion.x.size(); ++i)
+        sum += motion.cloth.midpoints.mass[i] * motion.velocity[i];
     return sum;
 }
 

@@ -11,11 +11,13 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr int most_restores = 30;
-constexpr double restore_rate = 0.7; // misfit may shrink no slower, or the step was too long for its linearisation
-constexpr double sufficient = 1e-4;  // of the decrease that the slope promises
-constexpr double first_shift = 1e-7, shift_growth = 8, shift_decay = 0.2, most_shift = 1e3; // of the mean diagonal
+constexpr double restore_rate =
+    0.7; // misfit may shrink no slower, or the step was too long for its linearisation
+constexpr double sufficient = 1e-4; // of the decrease that the slope promises
+constexpr double first_shift = 1e-7, shift_growth = 8, shift_decay = 0.2,
+                 most_shift = 1e3; // of the mean diagonal
 constexpr int longest_wait = 7;
-constexpr double too_stiff = 1.5;    // gain over what was promised from which longer steps are looked for
+constexpr double too_stiff = 1.5; // gain over what was promised from which longer steps are looked for
 constexpr double rounding = 1e-15;
 constexpr double near_enough = 0.01; // strain
 constexpr double restoring_shift = 1e-9;
@@ -28,7 +30,8 @@ VectorXd product(const Eigen::SparseMatrix<double>& a, const VectorXd& x) {
 
 double strain_of(const Bars& bars, const VectorXd& c) {
     double most = 0;
-    for (std::size_t i = 0; i < bars.size(); ++i) most = std::max(most, std::abs(c[i]) / bars[i].length);
+    for (std::size_t i = 0; i < bars.size(); ++i)
+        most = std::max(most, std::abs(c[i]) / bars[i].length);
     return most;
 }
 
@@ -56,8 +59,8 @@ struct Descent {
     double shift = 0;
     int wait = 0, last_wait = 0; ///< iterations until the exact second derivative is tried again
 
-    /// The exact second derivative where it is positive; where it is not, as in cloth that is pushed together, that without
-    /// the pushing bars. The exact one is then tried again after ever longer waits.
+    /// The exact second derivative where it is positive; where it is not, as in cloth that is pushed
+    /// together, that without the pushing bars. The exact one is then tried again after ever longer waits.
     bool factorise(const Points& x) {
         if (wait == 0) {
             if (saddle.factorise(problem.stiffness, shift * diagonal, x, lambda)) {
@@ -90,15 +93,18 @@ struct Descent {
         return strain <= options.strain;
     }
 
-    /// Onto the lengths to begin with: near them by one linearisation, from farther off by as many as it takes.
+    /// Onto the lengths to begin with: near them by one linearisation, from farther off by as many as it
+    /// takes.
     bool start(Points& x) {
         const Points given = x;
-        if (strain_of(saddle.bars(), misfit(saddle.bars(), x)) < near_enough && factorise(x) && restore(x)) return true;
+        if (strain_of(saddle.bars(), misfit(saddle.bars(), x)) < near_enough && factorise(x) && restore(x))
+            return true;
         x = given;
         return make_isometric(saddle, problem, x, options.strain);
     }
 
-    /// Change of energy + tension . misfit from x by `step`: the energy is quadratic, so that nothing cancels.
+    /// Change of energy + tension . misfit from x by `step`: the energy is quadratic, so that nothing
+    /// cancels.
     double change(const VectorXd& g, const VectorXd& step, const VectorXd& tension, const VectorXd& before,
                   const Points& after) const {
         return g.dot(step) + 0.5 * step.dot(product(problem.stiffness, step)) +
@@ -106,19 +112,22 @@ struct Descent {
     }
 
     /// Goes along d and back to the lengths, as far as it lowers the energy. Returns the share gone, 0: none.
-    double advance(Points& x, const VectorXd& g, const VectorXd& c, const VectorXd& d, const VectorXd& tension) {
+    double advance(Points& x, const VectorXd& g, const VectorXd& c, const VectorXd& d,
+                   const VectorXd& tension) {
         VectorXd balance = g;
         add_tensions(saddle.bars(), x, tension, balance);
         const double slope = balance.dot(d);
         // Of the sum of tension . misfit, whose terms are rounded with the coordinates.
-        const double noise = rounding * (tension.norm() * flat(x).cwiseAbs().maxCoeff() + g.norm() * d.norm());
+        const double noise =
+            rounding * (tension.norm() * flat(x).cwiseAbs().maxCoeff() + g.norm() * d.norm());
         for (double t = within_turn(saddle.bars(), d, options.max_turn); t > 1e-6; t *= 0.5) {
             Points trial = x;
             flat(trial) += t * d;
             if (!restore(trial)) continue;
             double gain = -change(g, flat(trial) - flat(x), tension, c, trial);
             if (-gain > sufficient * t * slope + noise) continue;
-            for (double further = 2 * t; gain > too_stiff * -slope * t * (1 - t / 2) && further < 9; further *= 2) {
+            for (double further = 2 * t; gain > too_stiff * -slope * t * (1 - t / 2) && further < 9;
+                 further *= 2) {
                 Points beyond = x;
                 flat(beyond) += further * d;
                 if (within_turn(saddle.bars(), further * d, options.max_turn) < 1 || !restore(beyond)) break;
@@ -136,12 +145,13 @@ struct Descent {
 
 } // namespace
 
-void add_spring(IsometricProblem& problem, const std::vector<std::pair<int, double>>& point, const Vec3& place,
-                double stiffness) {
+void add_spring(IsometricProblem& problem, const std::vector<std::pair<int, double>>& point,
+                const Vec3& place, double stiffness) {
     std::vector<Eigen::Triplet<double>> entries;
     for (const auto& [i, wi] : point) {
         problem.load[i] += stiffness * wi * place;
-        for (const auto& [j, wj] : point) entries.emplace_back(i, j, stiffness * wi * wj);
+        for (const auto& [j, wj] : point)
+            entries.emplace_back(i, j, stiffness * wi * wj);
     }
     Eigen::SparseMatrix<double> spring(problem.stiffness.rows(), problem.stiffness.cols());
     spring.setFromTriplets(entries.begin(), entries.end());
@@ -169,7 +179,8 @@ IsometricResult settle_isometric(Saddle& saddle, const IsometricProblem& problem
     IsometricResult result;
     const int before = saddle.factorisations();
     Descent descent{saddle, problem, options, problem.stiffness.diagonal().mean(), tension};
-    if (descent.lambda.size() != Eigen::Index(problem.bars.size())) descent.lambda.setZero(problem.bars.size());
+    if (descent.lambda.size() != Eigen::Index(problem.bars.size()))
+        descent.lambda.setZero(problem.bars.size());
     const bool isometric = descent.start(x);
     VectorXd d, y;
     for (;; ++result.iterations) {
@@ -203,8 +214,9 @@ IsometricResult settle_isometric(Saddle& saddle, const IsometricProblem& problem
             break;
         }
         descent.lambda += t * y;
-        descent.shift = t < 0.3 ? std::max(shift_growth * descent.shift, first_shift)
-                                : descent.shift < first_shift ? 0 : shift_decay * descent.shift;
+        descent.shift = t < 0.3                       ? std::max(shift_growth * descent.shift, first_shift)
+                        : descent.shift < first_shift ? 0
+                                                      : shift_decay * descent.shift;
     }
     result.tension = descent.lambda;
     result.factorisations = saddle.factorisations() - before;

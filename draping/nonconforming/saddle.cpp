@@ -21,16 +21,19 @@ Saddle::Saddle(const Eigen::SparseMatrix<double>& stiffness, Bars bars, std::vec
     for (int j = 0; j < stiffness.outerSize(); ++j)
         for (Eigen::SparseMatrix<double>::InnerIterator e(stiffness, j); e; ++e)
             if (e.row() > e.col()) pairs.emplace_back(int(e.row()), int(e.col()));
-    for (const Bar& bar : bars_) pairs.emplace_back(bar.a, bar.b);
+    for (const Bar& bar : bars_)
+        pairs.emplace_back(bar.a, bar.b);
     matrix_ = BlockMatrix(int(stiffness.rows()), pairs);
     for (int j = 0; j < stiffness.outerSize(); ++j)
         for (Eigen::SparseMatrix<double>::InnerIterator e(stiffness, j); e; ++e)
             slot_of_entry_.push_back(e.row() > e.col() ? matrix_.find(int(e.row()), int(e.col())) : -1);
-    for (const Bar& bar : bars_) slot_of_bar_.push_back(matrix_.find(std::max(bar.a, bar.b), std::min(bar.a, bar.b)));
+    for (const Bar& bar : bars_)
+        slot_of_bar_.push_back(matrix_.find(std::max(bar.a, bar.b), std::min(bar.a, bar.b)));
     factor_.analyse(matrix_);
 }
 
-bool Saddle::factorise(const Eigen::SparseMatrix<double>& stiffness, double shift, const Points& x, const VectorXd& lambda) {
+bool Saddle::factorise(const Eigen::SparseMatrix<double>& stiffness, double shift, const Points& x,
+                       const VectorXd& lambda) {
     at_ = x;
     matrix_.set_zero();
     double largest = shift;
@@ -44,7 +47,8 @@ bool Saddle::factorise(const Eigen::SparseMatrix<double>& stiffness, double shif
                 matrix_.add_off_diagonal(j, slot_of_entry_[entry], e.value() * Mat3::Identity());
             }
         }
-    for (std::size_t i = 0; i < bars_.size(); ++i) largest = std::max(largest, std::abs(lambda[i]) / bars_[i].length);
+    for (std::size_t i = 0; i < bars_.size(); ++i)
+        largest = std::max(largest, std::abs(lambda[i]) / bars_[i].length);
     penalty_ = penalty_factor * largest;
     for (std::size_t i = 0; i < bars_.size(); ++i) {
         const Bar& bar = bars_[i];

@@ -21,7 +21,8 @@ namespace {
 Points edge_means(const Garment& garment, const FlatMesh& mesh, const std::function<Vec3(const Vec2&)>& map) {
     Points x;
     for (const auto& [a, b] : garment.edges.ends)
-        x.push_back((map(mesh.points[a]) + map(mesh.points[b]) + 4 * map((mesh.points[a] + mesh.points[b]) / 2)) / 6);
+        x.push_back(
+            (map(mesh.points[a]) + map(mesh.points[b]) + 4 * map((mesh.points[a] + mesh.points[b]) / 2)) / 6);
     return x;
 }
 
@@ -42,12 +43,14 @@ Fabric orthotropic() {
 
 double energy_per_area(const Fabric& f, double uu, double vv, double uv) {
     const double c = f.bend_poisson * std::sqrt(f.bend_warp * f.bend_weft);
-    return 0.5 * (f.bend_weft * uu * uu + f.bend_warp * vv * vv + 2 * c * uu * vv + 4 * f.bend_twist * uv * uv);
+    return 0.5 *
+           (f.bend_weft * uu * uu + f.bend_warp * vv * vv + 2 * c * uu * vv + 4 * f.bend_twist * uv * uv);
 }
 
 Points shaken(Points x, double by, std::uint64_t seed) {
     Random random(seed);
-    for (Vec3& p : x) p += random.vec3(by);
+    for (Vec3& p : x)
+        p += random.vec3(by);
     return x;
 }
 
@@ -69,16 +72,20 @@ TEST_CASE("ghost nodes of midpoints of straight edges are the nodes", "[midpoint
     const Midpoints midpoints = make_midpoints(garment, {sheet_fabric(0.2, 1)});
     const Points nodes = shaken(flat_points(mesh), 0.3, 5), x = midpoints_of(garment, nodes);
     const Points ghosts = ghost_nodes(midpoints, x);
-    for (std::size_t i = 0; i < nodes.size(); ++i) CHECK((ghosts[i] - nodes[i]).norm() < 1e-14);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        CHECK((ghosts[i] - nodes[i]).norm() < 1e-14);
 
     double mass = 0;
-    for (double m : midpoints.mass) mass += m;
+    for (double m : midpoints.mass)
+        mass += m;
     CHECK(mass == Approx(0.2 * 0.5));
     // Forces and velocities do the same work on either side of the map.
-    const Points forces = shaken(Points(nodes.size(), Vec3::Zero()), 1, 6), v = shaken(Points(x.size(), Vec3::Zero()), 1, 7);
+    const Points forces = shaken(Points(nodes.size(), Vec3::Zero()), 1, 6),
+                 v = shaken(Points(x.size(), Vec3::Zero()), 1, 7);
     const Points ghost_v = ghost_nodes(midpoints, v);
     CHECK(flat(from_ghost_nodes(midpoints, forces)).dot(flat(v)) == Approx(flat(forces).dot(flat(ghost_v))));
-    CHECK_THROWS_WITH(make_midpoints(garment, {sheet_fabric(0, 1)}), Catch::Contains("density must be positive"));
+    CHECK_THROWS_WITH(make_midpoints(garment, {sheet_fabric(0, 1)}),
+                      Catch::Contains("density must be positive"));
 }
 
 TEST_CASE("lengths of bars have the derivatives that are told", "[midpoints]") {
@@ -147,26 +154,31 @@ TEST_CASE("bending on midpoints: derivatives, rigid motions and what is left fre
     const Points x = shaken(midpoints_of(garment, flat_points(mesh)), 0.05, 3);
     const VectorXd d = directions(x.size(), 4);
     const double h = 1e-5;
-    const double difference = (bend_value(bending, moved(x, d, h)) - bend_value(bending, moved(x, d, -h))) / (2 * h);
+    const double difference =
+        (bend_value(bending, moved(x, d, h)) - bend_value(bending, moved(x, d, -h))) / (2 * h);
     const Points gradient = bend_gradient(bending, x);
     CHECK(flat(gradient).norm() > 1);
     CHECK(difference == Approx(flat(gradient).dot(d)).epsilon(1e-7));
-    const Points ahead = bend_gradient(bending, moved(x, d, h)), behind = bend_gradient(bending, moved(x, d, -h));
+    const Points ahead = bend_gradient(bending, moved(x, d, h)),
+                 behind = bend_gradient(bending, moved(x, d, -h));
     const VectorXd turned = (flat(ahead) - flat(behind)) / (2 * h);
     for (int c = 0; c < 3; ++c) {
         VectorXd dc(x.size()), tc(x.size());
-        for (std::size_t i = 0; i < x.size(); ++i) dc[i] = d[3 * i + c], tc[i] = turned[3 * i + c];
+        for (std::size_t i = 0; i < x.size(); ++i)
+            dc[i] = d[3 * i + c], tc[i] = turned[3 * i + c];
         CHECK((bending.stiffness * dc - tc).norm() < 1e-7 * tc.norm());
     }
 
-    // Flat cloth has no energy, wherever it lies; all else has, so that triangles cannot turn against each other.
+    // Flat cloth has no energy, wherever it lies; all else has, so that triangles cannot turn against each
+    // other.
     const MidpointBending loose = make_midpoint_bending(garment, {orthotropic()});
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes{Eigen::MatrixXd(loose.stiffness)};
     CHECK(modes.eigenvalues()[2] < 1e-12 * modes.eigenvalues().maxCoeff());
     CHECK(modes.eigenvalues()[3] > 1e-8 * modes.eigenvalues().maxCoeff());
     Points turned_flat;
     const Eigen::AngleAxisd turn(1.1, Vec3(1, 2, 3).normalized());
-    for (const Vec3& p : midpoints_of(garment, flat_points(mesh))) turned_flat.push_back(turn * p + Vec3(5, 6, 7));
+    for (const Vec3& p : midpoints_of(garment, flat_points(mesh)))
+        turned_flat.push_back(turn * p + Vec3(5, 6, 7));
     CHECK(bend_value(loose, turned_flat) < 1e-20 * bend_value(loose, x));
 }
 
@@ -182,10 +194,14 @@ TEST_CASE("a clamped edge is level cloth without energy, and any other slope cos
     }
     CHECK(bend_value(bending, level) < 1e-25);
     CHECK(bend_value(bending, tilted) > 0.01);
+    CHECK_THROWS_WITH(
+        make_midpoint_bending(garment, {sheet_fabric(1, 1)}, level_clamps({garment.edges.size()})),
+        Catch::Contains("of a clamp does not exist"));
 }
 
 TEST_CASE("cloth too small for exact slopes still bends", "[midpoints]") {
-    const FlatMesh two{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {{0, 1, 2}, {0, 2, 3}}}, one{{{0, 0}, {1, 0}, {1, 1}}, {{0, 1, 2}}};
+    const FlatMesh two{{{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {{0, 1, 2}, {0, 2, 3}}},
+        one{{{0, 0}, {1, 0}, {1, 1}}, {{0, 1, 2}}};
     const Garment pair = garment_of(two);
     const MidpointBending bending = make_midpoint_bending(pair, {sheet_fabric(1, 1)});
     Points folded = midpoints_of(pair, flat_points(two));
@@ -193,7 +209,8 @@ TEST_CASE("cloth too small for exact slopes still bends", "[midpoints]") {
     folded = midpoints_of(pair, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.5}});
     CHECK(bend_value(bending, folded) > 0.01);
     const Garment single = garment_of(one);
-    CHECK(bend_value(make_midpoint_bending(single, {sheet_fabric(1, 1)}), shaken(Points(3, Vec3::Zero()), 1, 2)) < 1e-20);
+    CHECK(bend_value(make_midpoint_bending(single, {sheet_fabric(1, 1)}),
+                     shaken(Points(3, Vec3::Zero()), 1, 2)) < 1e-20);
 }
 
 TEST_CASE("three panels on one edge are a hinge on midpoints", "[midpoints]") {
@@ -201,7 +218,8 @@ TEST_CASE("three panels on one edge are a hinge on midpoints", "[midpoints]") {
     const Garment garment = garment_of(mesh);
     REQUIRE(garment.edges.triangles_at(0) == 3);
     const NonconformingCloth cloth = make_nonconforming_cloth(garment, {sheet_fabric(1, 1)});
-    const Points spread = midpoints_of(garment, {{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, -1, 0}, {0.5, 0, 0.5}});
+    const Points spread =
+        midpoints_of(garment, {{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, -1, 0}, {0.5, 0, 0.5}});
     CHECK(bend_value(cloth.bending, spread) < 1e-25);
     CHECK(largest_strain(cloth.bars, spread) < 1e-14);
     const Points nodes = ghost_nodes(cloth.midpoints, spread);

@@ -32,9 +32,11 @@ struct Scene {
         Random random(3);
         const auto fill = [&](VectorXd& v, int size, double low, double high) {
             v.resize(size);
-            for (double& entry : v) entry = random.in(low, high);
+            for (double& entry : v)
+                entry = random.in(low, high);
         };
-        for (Vec3& p : x) p += random.vec3(0.02);
+        for (Vec3& p : x)
+            p += random.vec3(0.02);
         fill(lambda, int(cloth.bars.size()), 0, most_tension);
         fill(g, int(3 * x.size()), -1, 1);
         fill(c, int(cloth.bars.size()), -1e-3, 1e-3);
@@ -52,7 +54,8 @@ MatrixXd dense_system(const Scene& s, double shift) {
     for (int i = 0; i < m; ++i) {
         const Bar& bar = s.cloth.bars[i];
         const Mat3 pull = s.lambda[i] / bar.length * Mat3::Identity();
-        for (const auto& [p, q, sign] : {std::tuple{bar.a, bar.a, 1.0}, {bar.b, bar.b, 1.0}, {bar.a, bar.b, -1.0}, {bar.b, bar.a, -1.0}})
+        for (const auto& [p, q, sign] :
+             {std::tuple{bar.a, bar.a, 1.0}, {bar.b, bar.b, 1.0}, {bar.a, bar.b, -1.0}, {bar.b, bar.a, -1.0}})
             a.block<3, 3>(3 * p, 3 * q) += sign * pull;
         const Vec3 row = (s.x[bar.a] - s.x[bar.b]) / bar.length;
         a.block<1, 3>(n + i, 3 * bar.a) = row.transpose();
@@ -100,7 +103,8 @@ TEST_CASE("the saddle tells a minimum from a saddle", "[saddle]") {
         // Positive along J d = 0: by an orthonormal basis of the null space.
         const MatrixXd j = a.bottomLeftCorner(m, n);
         const Eigen::FullPivLU<MatrixXd> lu(j);
-        const MatrixXd basis = MatrixXd(lu.kernel()).householderQr().householderQ() * MatrixXd::Identity(n, lu.dimensionOfKernel());
+        const MatrixXd basis = MatrixXd(lu.kernel()).householderQr().householderQ() *
+                               MatrixXd::Identity(n, lu.dimensionOfKernel());
         const MatrixXd along = basis.transpose() * a.topLeftCorner(n, n) * basis;
         const double least = Eigen::SelfAdjointEigenSolver<MatrixXd>(along).eigenvalues()[0];
         CHECK(found == (least > 0));
@@ -118,7 +122,8 @@ TEST_CASE("conditions that contradict each other are told", "[saddle]") {
     REQUIRE(saddle.factorise(s.cloth.bending.stiffness, 0.5, s.x, s.lambda));
     VectorXd d, y;
     CHECK_FALSE(saddle.solve(s.g, s.c, d, y));
-    const IsometricProblem problem{s.cloth.bending.stiffness, Points(s.x.size(), Vec3(0, 0, -1)), s.cloth.bars, s.held};
+    const IsometricProblem problem{s.cloth.bending.stiffness, Points(s.x.size(), Vec3(0, 0, -1)),
+                                   s.cloth.bars, s.held};
     Points x = s.x;
     CHECK(settle_isometric(saddle, problem, x).end == IsometricEnd::not_isometric);
     CHECK(x == s.x);

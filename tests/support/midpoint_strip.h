@@ -11,13 +11,15 @@ namespace toile::test {
 
 enum class MeshKind { aligned, alternating, unstructured };
 
-/// Squares with all diagonals one way, with diagonals that alternate, or Delaunay triangles of jittered points.
+/// Squares with all diagonals one way, with diagonals that alternate, or Delaunay triangles of jittered
+/// points.
 inline FlatMesh strip_mesh(MeshKind kind, double length, double width, int along, std::uint64_t seed = 1) {
     if (kind == MeshKind::unstructured) return jittered_rectangle(length, width, length / along, 0.3, seed);
     const int up = std::max(1, int(std::lround(along * width / length)));
     FlatMesh mesh;
     for (int j = 0; j <= up; ++j)
-        for (int i = 0; i <= along; ++i) mesh.points.push_back({length * i / along, width * j / up});
+        for (int i = 0; i <= along; ++i)
+            mesh.points.push_back({length * i / along, width * j / up});
     for (int j = 0; j < up; ++j)
         for (int i = 0; i < along; ++i) {
             const int a = j * (along + 1) + i, b = a + 1, c = b + along + 1, d = c - 1;
@@ -79,7 +81,8 @@ inline Cantilever hang(const FlatMesh& mesh, double gamma, const NonconformingCl
     IsometricProblem problem = problem_of(cloth, Vec3(0, 0, -gamma));
     Points x = midpoints_of(garment, flat_points(mesh));
     const double stiffness = cloth.bending.stiffness.diagonal().mean();
-    for (int e : wall) add_spring(problem, {{e, 1.0}}, x[e], stiffness);
+    for (int e : wall)
+        add_spring(problem, {{e, 1.0}}, x[e], stiffness);
     Saddle saddle(problem.stiffness, problem.bars, problem.held);
     IsometricOptions options;
     options.tolerance = 1e-5 * gamma * 0.25 / garment.edges.size();

@@ -13,7 +13,7 @@ namespace toile::test {
 
 struct Sector {
     static constexpr double inner = 0.05, outer = 0.2; ///< m, the tip is cut off: no sheet of paper has one
-    Garment garment;         ///< sewn
+    Garment garment;                                   ///< sewn
     std::vector<Vec2> polar; ///< per node: angle in the flat sector, logarithm of radius / inner
 };
 
@@ -39,8 +39,8 @@ inline Sector sewn_sector(double angle, std::uint64_t seed, double edge = 0.08) 
     return s;
 }
 
-/// Angles to the axis, degrees, of the straight lines from the inner rim to the outer one; none when the rims do
-/// not have as many nodes.
+/// Angles to the axis, degrees, of the straight lines from the inner rim to the outer one; none when the rims
+/// do not have as many nodes.
 inline std::vector<double> generator_angles(const Sector& s, const Points& x) {
     std::vector<std::pair<double, int>> rim[2];
     Vec3 centre[2] = {Vec3::Zero(), Vec3::Zero()};
@@ -69,7 +69,8 @@ inline Points rough_cone(const Sector& s, double angle, double half_angle) {
     Points x;
     for (const Vec2& p : s.polar) {
         const double round = 2 * std::numbers::pi * p.x() / angle, slant = Sector::inner * std::exp(p.y());
-        x.push_back(slant * Vec3(std::sin(start) * std::cos(round), -std::cos(start), std::sin(start) * std::sin(round)) +
+        x.push_back(slant * Vec3(std::sin(start) * std::cos(round), -std::cos(start),
+                                 std::sin(start) * std::sin(round)) +
                     random.vec3(5e-4));
     }
     return x;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cloth that keeps its lengths exactly, against known answers. docs/nonconforming.md has the figures on more meshes.
+// Cloth that keeps its lengths exactly, against known answers. docs/nonconforming.md has the figures on more
+// meshes.
 
 #include "draping/energy/bend.h"
 #include "draping/nonconforming/motion.h"
@@ -19,8 +20,8 @@ namespace {
 constexpr double pi = std::numbers::pi;
 const std::vector<MeshKind> kinds = {MeshKind::aligned, MeshKind::alternating, MeshKind::unstructured};
 
-/// Drop over reach at gamma = 10 with a point per node and every edge of the mesh as a bar; both arms of a strip that is
-/// clamped by symmetry.
+/// Drop over reach at gamma = 10 with a point per node and every edge of the mesh as a bar; both arms of a
+/// strip that is clamped by symmetry.
 double conforming_slope(const FlatMesh& arm) {
     const FlatMesh mesh = mirrored(arm);
     const Garment garment = garment_of(mesh);
@@ -31,8 +32,10 @@ double conforming_slope(const FlatMesh& arm) {
     for (const auto& [a, b] : garment.edges.ends)
         problem.bars.push_back({a, b, (mesh.points[a] - mesh.points[b]).norm()});
     for (int t = 0; t < int(garment.triangles.size()); ++t)
-        for (int node : garment.nodes(t)) problem.load[node].z() -= 10 * std::abs(garment.rest.edges[t].determinant()) / 6;
-    for (int i = 0; i < garment.node_count; ++i) problem.held[i] = std::abs(mesh.points[i].x()) < 1e-12;
+        for (int node : garment.nodes(t))
+            problem.load[node].z() -= 10 * std::abs(garment.rest.edges[t].determinant()) / 6;
+    for (int i = 0; i < garment.node_count; ++i)
+        problem.held[i] = std::abs(mesh.points[i].x()) < 1e-12;
     Points x = flat_points(mesh);
     Saddle saddle(problem.stiffness, problem.bars, problem.held);
     IsometricOptions options;
@@ -54,8 +57,8 @@ Motion swinging_strip(bool pinned) {
     std::vector<GhostSpring> pins;
     for (int i = 0; pinned && i < garment.node_count; ++i)
         if (mesh.points[i].x() < 1e-9) pins.push_back({i, flat_points(mesh)[i], 100});
-    return start_motion(make_nonconforming_cloth(garment, {sheet_fabric(0.15, 1e-4)}), garment, flat_points(mesh), {},
-                        pins);
+    return start_motion(make_nonconforming_cloth(garment, {sheet_fabric(0.15, 1e-4)}), garment,
+                        flat_points(mesh), {}, pins);
 }
 
 Points after_swing(double seconds, int steps) {
@@ -75,7 +78,8 @@ Points after_swing(double seconds, int steps) {
 
 double farthest(const Points& a, const Points& b) {
     double most = 0;
-    for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, (a[i] - b[i]).norm());
+    for (std::size_t i = 0; i < a.size(); ++i)
+        most = std::max(most, (a[i] - b[i]).norm());
     return most;
 }
 
@@ -110,7 +114,8 @@ double energy_change(double time_step) {
 } // namespace
 
 TEST_CASE("cloth on midpoints hangs as the elastica does", "[validation][nonconforming]") {
-    for (const auto& [gamma, slope] : {std::pair{1.0, 0.12456176644}, {10.0, 1.06680232}, {100.0, 5.8881046}}) {
+    for (const auto& [gamma, slope] :
+         {std::pair{1.0, 0.12456176644}, {10.0, 1.06680232}, {100.0, 5.8881046}}) {
         std::vector<double> slopes;
         for (MeshKind kind : kinds) {
             INFO("gamma " << gamma << ", mesh " << int(kind));
@@ -140,7 +145,8 @@ TEST_CASE("the nodes of a mesh with edges that keep their lengths lock", "[valid
     // A strip rolls about lines of the mesh that run straight across it, where there are any.
     CHECK(conforming_slope(strip_mesh(MeshKind::aligned, 1, 0.25, 20)) == Approx(1.06680232).epsilon(0.02));
     CHECK(conforming_slope(strip_mesh(MeshKind::unstructured, 1, 0.25, 20)) < 0.1 * 1.06680232);
-    CHECK(conforming_slope(jittered_rectangle(1, 0.25, 0.05, 0, 1)) < 0.1 * 1.06680232); // equilateral triangles
+    CHECK(conforming_slope(jittered_rectangle(1, 0.25, 0.05, 0, 1)) <
+          0.1 * 1.06680232); // equilateral triangles
 }
 
 TEST_CASE("a sewn sector of cloth on midpoints is a cone", "[validation][nonconforming]") {
@@ -161,7 +167,8 @@ TEST_CASE("a sewn sector of cloth on midpoints is a cone", "[validation][nonconf
         CHECK(largest_triangle_strain(s.garment, x) < 1e-6);
         const std::vector<double> angles = generator_angles(s, ghost_nodes(cloth.midpoints, x));
         REQUIRE(!angles.empty());
-        for (double a : angles) CHECK(a == Approx(half_angle).margin(0.3));
+        for (double a : angles)
+            CHECK(a == Approx(half_angle).margin(0.3));
         CHECK(bend_value(cloth.bending, x) ==
               Approx(1e-5 * energy * std::log(Sector::outer / Sector::inner)).epsilon(0.03));
     }
@@ -176,7 +183,8 @@ TEST_CASE("a swinging strip is followed to second order in time", "[validation][
     CHECK(order < 2.5);
 }
 
-TEST_CASE("free flight keeps momentum to round-off and energy to second order", "[validation][nonconforming]") {
+TEST_CASE("free flight keeps momentum to round-off and energy to second order",
+          "[validation][nonconforming]") {
     Motion motion = thrown_strip();
     const Vec3 before = momentum(motion);
     MotionOptions options;
@@ -198,9 +206,11 @@ TEST_CASE("a pendulum loses energy as the amplification of BDF2 says", "[validat
     const FlatMesh mesh = strip_mesh(MeshKind::unstructured, length, 0.1, 8, 4);
     const Garment garment = garment_of(mesh);
     std::vector<char> held(garment.edges.size(), 0);
-    for (int e : edges_at_wall(mesh, garment)) held[e] = 1;
+    for (int e : edges_at_wall(mesh, garment))
+        held[e] = 1;
     Points nodes;
-    for (const Vec2& p : mesh.points) nodes.push_back({p.x() * std::sin(angle), p.y(), -p.x() * std::cos(angle)});
+    for (const Vec2& p : mesh.points)
+        nodes.push_back({p.x() * std::sin(angle), p.y(), -p.x() * std::cos(angle)});
     Motion motion;
     const auto energy = [&] {
         double potential = 0, mass = 0;
@@ -208,10 +218,12 @@ TEST_CASE("a pendulum loses energy as the amplification of BDF2 says", "[validat
             potential += 9.81 * motion.cloth.midpoints.mass[i] * motion.x[i].z();
             mass += motion.cloth.midpoints.mass[i];
         }
-        return kinetic_energy(motion) + potential + 9.81 * mass * length / 2 + bend_value(motion.cloth.bending, motion.x);
+        return kinetic_energy(motion) + potential + 9.81 * mass * length / 2 +
+               bend_value(motion.cloth.bending, motion.x);
     };
     for (double step : {0.2, 0.3}) { // times 1 / omega
-        motion = start_motion(make_nonconforming_cloth(garment, {sheet_fabric(0.15, 1)}), garment, nodes, held);
+        motion =
+            start_motion(make_nonconforming_cloth(garment, {sheet_fabric(0.15, 1)}), garment, nodes, held);
         MotionOptions options;
         options.time_step = step / omega;
         const auto swing = [&](int steps) {
@@ -249,8 +261,11 @@ TEST_CASE("ghost nodes go where contact puts them", "[validation][nonconforming]
         nodes = ghost_nodes(motion.cloth.midpoints, motion.x);
         CHECK(farthest(nodes, expected) < 1e-12);
     }
-    // Each step ends with a correction that the next one makes good: weight acts on midpoints, the floor on nodes.
+    CHECK_THROWS_WITH(finish_step(motion, options, Points(3)), Catch::Contains("are of 3 nodes, expected"));
+    // Each step ends with a correction that the next one makes good: weight acts on midpoints, the floor on
+    // nodes.
     CHECK(largest_strain(motion.cloth.bars, motion.x) < 5e-5);
     CHECK(kinetic_energy(motion) < 1e-6);
-    for (const Vec3& p : nodes) CHECK(p.z() == Approx(floor).margin(1e-9));
+    for (const Vec3& p : nodes)
+        CHECK(p.z() == Approx(floor).margin(1e-9));
 }

@@ -53,6 +53,13 @@ std::string response_sentence(const DrapeFacts& f) {
                 to_string(f.contact.response), to_string(f.contact.guarantee), f.contact.unresolved);
 }
 
+std::string method_sentence(const DrapeFacts& f) {
+    return text("the levels came to rest by the method \"%s\", as far as they did; placing and sewing had the membrane and the "
+                "plate of equilibrium. What holds strains within the fabric's limits there was left out%s",
+                to_string(f.method),
+                f.method == Method::springs_limited ? ", but for limits on the elongation of springs, swept over once a step" : "");
+}
+
 std::string level_sentence(const DrapeFacts& f) {
     if (f.restarted)
         return text("one level, %.3g mm: the start is an earlier drape", 1e3 * f.edge_lengths.back());
@@ -149,6 +156,7 @@ std::vector<std::string> decisions(const DrapeFacts& f, const Garment& g, const 
                                    const PanelFabrics& fabrics, const TriMesh& body) {
     std::vector<std::string> out{level_sentence(f), contact_sentence(f), friction_sentence(f, g.node_count),
                                  growth_sentence(f)};
+    if (moves(f.method)) out.push_back(method_sentence(f));
     if (f.contact.response != ContactResponse::barrier) out.push_back(response_sentence(f));
     if (f.untangled > 0)
         out.push_back(text("where cloth crossed itself after sewing or on a finer mesh, it was taken apart before contact "

@@ -33,6 +33,7 @@ TouchFacts count_touching(const Contact& contact, const Points& x);
 
 struct DrapeFacts {
     TouchFacts touch;
+    Method method = Method::equilibrium;
     ContactReport contact;
     FrictionCoefficients friction;
     double clearance = 0;            ///< m

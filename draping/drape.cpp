@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace toile {
 
@@ -172,10 +173,20 @@ const char* to_string(DrapeStatus s) {
     return "stalled";
 }
 
+ContactResponse response_of(const DrapeOptions& o) {
+    const ContactResponse response = o.contact.value_or(usual_response(o.method));
+    if (moves(o.method) && response == ContactResponse::barrier)
+        throw std::invalid_argument(std::string("the method ") + to_string(o.method) + " moves cloth in time, which the contact "
+                                    "barrier cannot answer: it needs constraint, penalty, impulse or rigid");
+    return response;
+}
+
 DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabrics& fabrics,
                   const DrapeOptions& options) {
     DrapeRun run{.staging = staging, .avatar = avatar.body, .fabrics = fabrics, .options = options};
     run.result.residual = std::numeric_limits<double>::infinity();
+    run.result.method = options.method;
+    run.result.contact.response = response_of(options);
     run.result.tolerance = options.tolerance;
     run.result.friction = {options.friction, options.cloth_friction};
     run.iterations_left = options.max_iterations;

@@ -2,13 +2,14 @@
 #pragma once
 
 #include "draping/contact/friction.h"
-#include "draping/contact/response_kind.h"
 #include "draping/landmarks.h"
 #include "draping/measure.h"
+#include "draping/method.h"
 #include "draping/staging.h"
 #include "draping/state.h"
 
 #include <functional>
+#include <optional>
 
 namespace toile {
 
@@ -31,8 +32,11 @@ struct DrapeOptions {
     double friction = -1;           ///< Coulomb coefficient on the body; negative: the largest of the fabrics'
     double cloth_friction = -1;     ///< of cloth on cloth; the same
     double gravity = 9.81;          ///< m/s2, along -y
-    /// What levels come to rest with. Placing and sewing always have the barrier, so that they start without crossings.
-    ContactResponse contact = ContactResponse::barrier;
+    /// What levels come to rest by, and with. Placing and sewing always have equilibrium and the barrier, so that they start
+    /// without crossings. No response: the usual one of the method.
+    Method method = Method::equilibrium;
+    MethodOptions method_options;
+    std::optional<ContactResponse> contact;
     int max_iterations = 5000;      ///< Newton iterations, or steps of a motion, on all levels together
     double max_seconds = 1e9;       ///< wall time after which the state reached is returned with status limit
     double max_memory = 1e18;       ///< bytes of the process; the same happens when they or the next level come near
@@ -69,6 +73,9 @@ struct ContactReport {
     double seconds = 0;                    ///< wall time of contact, part of that of the stages
 };
 
+/// The response that acts. Throws std::invalid_argument when the barrier is asked for with a method that moves.
+ContactResponse response_of(const DrapeOptions& options);
+
 /// A drape and by how much it met each promise.
 struct DrapeResult {
     Garment garment;   ///< finest level, seams closed
@@ -80,6 +87,7 @@ struct DrapeResult {
     double residual = 0; ///< infinity when nothing was settled
     double tolerance = 0;
     FrictionCoefficients friction;
+    Method method = Method::equilibrium;
     BarrierReport barrier;
     ContactReport contact;
     std::vector<LevelReport> levels;
@@ -91,7 +99,7 @@ struct DrapeResult {
 
 /// Sews and drapes: sew, weld, grow, settle and refine on every level from coarse to fine, prove. A seam that
 /// cannot be closed ends it: status stalled, and the garment is the coarsest, open where it would not close. `fabrics` has one
-/// entry per panel. Throws std::runtime_error only for input that check() would have refused.
+/// entry per panel. Throws std::runtime_error only for input that check() would have refused, and as response_of() does.
 DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabrics& fabrics,
                   const DrapeOptions& options);
 /// The same for stage(pattern, flat).

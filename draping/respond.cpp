@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/respond.h"
 
+#include "draping/solve/implicit.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -19,27 +21,38 @@ constexpr double damper_share = 0.05;   // of m / dt
 constexpr double depth = 10e-3;         // m: lists of pairs grow long with it
 constexpr ContactOptions no_contact{{1, 0, 0}, {1, 0, 0}, false};
 
-ResponseOptions response_options(const DrapeRun& run, const ClothProblem& problem) {
+ResponseOptions response_options(const DrapeRun& run, const ClothProblem& problem, double step) {
     ResponseOptions o;
     o.thickness = run.contact_options().body.distance;
     o.body_friction = run.result.friction.body;
     o.cloth_friction = run.result.friction.cloth;
     o.stiffness = repulsion;
-    if (run.options.contact != ContactResponse::penalty) return o;
+    if (response_of(run.options) != ContactResponse::penalty) return o;
     double mass = 0;
     for (const double m : problem.node_mass()) mass += m / problem.points();
-    o.stiffness = penalty_share * mass / (time_step * time_step);
+    o.stiffness = penalty_share * mass / (step * step);
     o.depth = depth;
-    o.normal_damping = o.tangential_damping = damper_share * mass / time_step;
+    o.normal_damping = o.tangential_damping = damper_share * mass / step;
     return o;
 }
 
 } // namespace
 
-LevelInMotion::LevelInMotion(const DrapeRun& run)
-    : problem(run.garment, run.level_fabrics(), {}, no_contact),
-      response(make_response(run.options.contact, contact_cloth(run.garment), run.body, response_options(run, problem))),
-      stepper(problem, *response, {time_step, damping, std::min(most_motion, run.edge_length())}) {
+LevelInMotion::LevelInMotion(const DrapeRun& run, const ClothProblem& at_rest) {
+    const MethodOptions& how = run.options.method_options;
+    StepOptions step{time_step, damping, std::min(most_motion, run.edge_length())};
+    if (how.time_step > 0 && !moves(run.options.method)) step.time_step = how.time_step;
+    response = make_response(response_of(run.options), contact_cloth(run.garment), run.body,
+                             response_options(run, at_rest, std::max(step.time_step, how.time_step)));
+    if (moves(run.options.method)) {
+        stepper = make_stepper(run.options.method, run.garment, run.level_fabrics(), at_rest.pinned(), *response, step, how);
+    } else {
+        sheet = std::make_unique<ClothProblem>(run.garment, run.level_fabrics(), TriMesh{}, no_contact);
+        for (int i = 0; i < sheet->points(); ++i)
+            if (at_rest.pinned()[i]) sheet->pin(i);
+        stepper = std::make_unique<ImplicitStepper>(*sheet, *response, step);
+    }
+    stepper->loads() = at_rest;
     cloth.x = run.x;
 }
 
@@ -53,7 +66,7 @@ RestResult LevelInMotion::rest(DrapeRun& run, double tolerance, int max_steps, b
         const double within = (base - from) / std::max(span, 1e-9);
         return run.tell(within + (1 - within) * (1 - std::exp(-i / 500.0)), r);
     };
-    const RestResult r = come_to_rest(stepper, cloth, response->body(), o);
+    const RestResult r = come_to_rest(*stepper, cloth, response->body(), o);
     run.x = cloth.x;
     run.result.residual = r.residual;
     run.iterations_left -= r.steps;

@@ -1,22 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-// A level brought to rest by a response instead of the barrier: damped motion. Internal to the stages of a drape.
+// A level brought to rest by motion in time, whatever the method, with a response to contact. Internal to the stages of a
+// drape.
 
 #include "draping/drape_run.h"
-#include "draping/solve/implicit.h"
+#include "draping/solve/stepper.h"
 
 namespace toile {
 
 /// The level at work in motion: its cloth without contact, and the response to what it meets. The start, `run.x`,
 /// should cross nothing.
 struct LevelInMotion {
-    ClothProblem problem;
+    std::unique_ptr<ClothProblem> sheet; ///< of equilibrium, whose membrane softens and has limits; others have none
     std::unique_ptr<Response> response;
-    ImplicitStepper stepper;
+    std::unique_ptr<Stepper> stepper;
     Moving cloth;
 
-    explicit LevelInMotion(const DrapeRun& run);
+    /// With the pins and the loads of the problem that it stands in for.
+    LevelInMotion(const DrapeRun& run, const ClothProblem& at_rest);
 
     /// Steps until the cloth is at rest, to `tolerance` on the residual, or `max_steps` are over; `run.x` is then where
     /// it is. A last pass is to be at rest to 1 mm/s, others to 20.

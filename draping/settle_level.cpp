@@ -33,10 +33,10 @@ constexpr int steps_per_iteration = 3;         // a motion takes more steps than
 constexpr double coarse_motion_residual = 0.3; // less than the 1 of free fall
 
 /// Bands are softened with the cloth, which they would crumple otherwise.
-void soften(const DrapeRun& run, ClothProblem& problem, double softness) {
+void soften(const DrapeRun& run, ClothProblem& problem, Loads& loads, double softness) {
     problem.sheet().softness = softness;
-    problem.elastics = elastic_segments(run.staging, run.garment);
-    for (ElasticSegment& s : problem.elastics) s.stiffness *= softness;
+    loads.elastics = elastic_segments(run.staging, run.garment);
+    for (ElasticSegment& s : loads.elastics) s.stiffness *= softness;
 }
 
 /// Takes the cloth apart without regard to its pattern: the body gives way meanwhile, and parts go back as a whole.
@@ -58,15 +58,16 @@ void note_release(DrapeRun& run) {
         run.facts.hooks.push_back({label, false, run.carried_at[label], now.at(label), 0});
 }
 
-void note_facts(DrapeRun& run, const ClothProblem& problem, const TouchFacts& touch) {
+void note_facts(DrapeRun& run, const Loads& loads, const TouchFacts& touch) {
     DrapeFacts& f = run.facts;
     f.touch = touch;
+    f.method = run.options.method;
     f.contact = run.result.contact;
     f.friction = run.result.friction;
     f.clearance = run.options.clearance;
     f.pins = int(pinned_places(run.staging, run.level, run.garment).size());
-    f.band_segments = int(problem.elastics.size());
-    for (const ElasticSegment& s : problem.elastics) {
+    f.band_segments = int(loads.elastics.size());
+    for (const ElasticSegment& s : loads.elastics) {
         f.band_rest += s.rest;
         f.band_length += (run.x[s.b] - run.x[s.a]).norm();
         f.band_pull = std::max(f.band_pull, s.stiffness * strain(s, run.x));
@@ -181,13 +182,9 @@ void settle_level(DrapeRun& run) {
 
     // From this start on a response may take over: the same cloth, in motion.
     std::optional<LevelInMotion> motion;
-    if (run.options.contact != ContactResponse::barrier) {
-        motion.emplace(run);
-        motion->problem.gravity = problem.gravity;
-        add_fixtures(run, motion->problem);
-        motion->problem.hooks = problem.hooks;
-    }
-    ClothProblem& acting = motion ? motion->problem : problem;
+    if (response_of(run.options) != ContactResponse::barrier) motion.emplace(run, problem);
+    ClothProblem* const sheet = motion ? motion->sheet.get() : &problem; // null: of a method of its own
+    Loads& acting = motion ? motion->stepper->loads() : problem;
 
     struct Pass {
         double softness;
@@ -199,6 +196,7 @@ void settle_level(DrapeRun& run) {
     std::vector<Pass> passes{{1.0 / 4, 8, false}, {1, most_iterations, false}};
     if (first)
         passes = {{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, run.last_level() ? most_iterations : 150, false}};
+    if (!sheet) passes.erase(passes.begin(), passes.end() - (first ? 2 : 1)); // nothing to soften
     if (run.facts.restarted) passes = {{1, most_iterations, false}};
     if (acting.hooks.size() > kept.size()) {
         passes.insert(passes.end() - 1, {1, 100, true});
@@ -210,7 +208,7 @@ void settle_level(DrapeRun& run) {
     for (const Pass& pass : passes) {
         if (run.stopped) break;
         const bool last_pass = &pass == &passes.back();
-        soften(run, acting, pass.softness);
+        if (sheet) soften(run, *sheet, acting, pass.softness);
         if (!pass.hooked && acting.hooks.size() > kept.size()) {
             note_release(run);
             acting.hooks = kept;
@@ -220,11 +218,13 @@ void settle_level(DrapeRun& run) {
         o.tolerance = run.last_level() && last_pass ? run.options.tolerance : coarse_residual;
         o.max_iterations = pass.iterations;
         o.exact_below = last_pass ? 20 : 0;
-        if (pass.softness == 1 || !first) acting.limit_strain(last_pass && run.last_level() ? hard_limit : soft_limit);
+        if (sheet && (pass.softness == 1 || !first))
+            sheet->limit_strain(last_pass && run.last_level() ? hard_limit : soft_limit);
         if (motion) {
             const bool last = last_pass && run.last_level();
             rest = motion->rest(run, last ? run.options.tolerance : coarse_motion_residual,
                                 steps_per_iteration * pass.iterations, last);
+            if (!rest.broken.empty()) break;
             continue;
         }
         // What did not come apart may do so when the cloth has moved.
@@ -241,28 +241,30 @@ void settle_level(DrapeRun& run) {
     }
     if (!motion) run.result.residual = r.residual;
     ContactReport& report = run.result.contact;
-    report.response = run.options.contact;
     if (run.level == 0 || run.facts.restarted)
         report.guarantee = motion ? motion->response->guarantee() : Guarantee::no_crossing;
     if (tangled || !run.grown || report.unresolved > 0) report.guarantee = Guarantee::none;
     run.result.barrier = {contact.body.distance, contact.body.stiffness, contact.cloth.stiffness};
     if (run.last_level()) {
-        const int beyond = int(acting.beyond_limits(run.x).size());
+        const int beyond = int(problem.beyond_limits(run.x).size());
         if (motion) problem.touch(run.x);
         note_facts(run, acting, motion ? motion->touch_facts(problem.contact()) : count_touching(problem.contact(), run.x));
         const bool at_rest = motion ? rest.rested : r.end == SettleEnd::settled;
-        if (run.stopped || (motion && !at_rest) || (run.iterations_left <= 0 && beyond == 0))
+        const bool out_of_steps = motion ? !at_rest && rest.broken.empty() : run.iterations_left <= 0 && beyond == 0;
+        if (run.stopped || out_of_steps)
             run.result.status = DrapeStatus::limit;
         else if (!run.grown)
             run.result.status = DrapeStatus::too_small;
-        else if (at_rest && beyond == 0)
+        else if (at_rest && (beyond == 0 || !sheet)) // other methods promise no limits
             run.result.status = DrapeStatus::converged;
         else
             run.result.status = DrapeStatus::stalled;
         if (run.result.status != DrapeStatus::converged) {
-            if (motion) motion->stepper.residual(motion->cloth); // tells which node is worst
-            note_where(run, problem, r.end, acting.worst_node());
-            if (motion && !at_rest)
+            if (motion) motion->stepper->residual(motion->cloth); // tells which node is worst
+            note_where(run, problem, r.end, motion ? motion->stepper->worst_node() : problem.worst_node());
+            if (!rest.broken.empty())
+                run.result.where = rest.broken + "; " + run.result.where;
+            else if (motion && !at_rest)
                 run.result.where += text("; not at rest after %d steps, at %.2g m/s", run.result.levels.back().iterations,
                                          rest.speed);
         }

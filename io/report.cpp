@@ -213,6 +213,7 @@ nlohmann::ordered_json make_report(const DrapeResult& r, const TriMesh& body, co
         {"fabric", context.fabric},
         {"friction", r.friction.body},
         {"cloth_friction", r.friction.cloth},
+        {"method", to_string(r.method)},
         {"barrier",
          {{"distance", r.barrier.distance},
           {"stiffness", r.barrier.stiffness},

@@ -20,9 +20,27 @@ namespace {
 
 struct DrapeArguments {
     DrapeJob job;
+    bool sweeps_chosen = false;
     int threads = 0;
     bool quiet = false, json = false;
 };
+
+/// Options that the method would ignore in silence.
+void refuse_useless_method(const DrapeArguments& a) {
+    const DrapeOptions& o = a.job.drape;
+    const std::string method = std::string("the method ") + to_string(o.method);
+    if (moves(o.method) && o.contact == ContactResponse::barrier)
+        throw CommandLineError(method + " moves cloth in time, which --contact barrier cannot answer: name constraint, penalty, "
+                                        "impulse (the default) or rigid");
+    if (moves(o.method) && !a.job.avatar_sequence.empty())
+        throw CommandLineError(method + " drapes on a body at rest; a sequence of --avatar-sequence is followed by equilibrium");
+    if (o.method_options.time_step > 0 && response_of(o) == ContactResponse::barrier)
+        throw CommandLineError("--time-step is that of a motion: equilibrium with the contact barrier has no time; name another "
+                               "--method or --contact");
+    if (a.sweeps_chosen && o.method != Method::springs_limited)
+        throw CommandLineError("--limit and --sweep are about limits on springs, which " + method +
+                               " does not have: name --method springs-limited");
+}
 
 void refuse_useless(const DrapeArguments& a) {
     if (a.job.garments.empty() && a.job.report.empty() && a.job.preview.empty() && !a.json)
@@ -31,6 +49,7 @@ void refuse_useless(const DrapeArguments& a) {
         throw CommandLineError("--avatar and --avatar-sequence both name the body");
     if (a.job.repair_avatar && a.job.avatar.empty() && a.job.avatar_sequence.empty())
         throw CommandLineError("--repair-avatar needs --avatar; the built-in form is closed");
+    refuse_useless_method(a);
     for (const std::string& path : a.job.garments) {
         try {
             garment_format(path);
@@ -129,6 +148,47 @@ int drape_command(const DrapeArguments& arguments, const Console& console) {
     return exit_not_converged;
 }
 
+std::string joined_by_bars(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names) text += (text.empty() ? "" : "|") + name;
+    return text;
+}
+
+/// --method and what only some methods have.
+void add_method(CLI::App& command, DrapeArguments& a) {
+    DrapeOptions& drape = a.job.drape;
+    std::vector<std::string> names;
+    for (const Method m : all_methods()) names.push_back(to_string(m));
+    command
+        .add_option_function<std::string>(
+            "--method", [&drape](const std::string& name) { drape.method = method_called(name); },
+            "What cloth is modelled and brought to rest by, by docs/methods.md (default equilibrium)")
+        ->check(CLI::IsMember(names).description(""))
+        ->type_name(joined_by_bars(names));
+    add_duration(command, "time-step", drape.method_options.time_step, 1e-7, 0.1,
+                 "Step of a motion, of explicit methods that of their substeps (default 2 ms; what is stable)");
+    command
+        .add_option_function<std::string>(
+            "--limit",
+            [&a](const std::string& what) {
+                a.sweeps_chosen = true;
+                a.job.drape.method_options.limits.shear = what == "stretch-and-shear";
+            },
+            "What springs-limited limits (default stretch)")
+        ->check(CLI::IsMember({"stretch", "stretch-and-shear"}).description(""))
+        ->type_name("stretch|stretch-and-shear");
+    command
+        .add_option_function<std::string>(
+            "--sweep",
+            [&a](const std::string& order) {
+                a.sweeps_chosen = true;
+                a.job.drape.method_options.limits.order = sweep_order(order);
+            },
+            "The order in which it does so (default listed)")
+        ->check(CLI::IsMember({"listed", "reversed", "longest-first", "from-top"}).description(""))
+        ->type_name("listed|reversed|longest-first|from-top");
+}
+
 } // namespace
 
 void add_drape(CLI::App& app, Command& chosen) {
@@ -173,9 +233,11 @@ void add_drape(CLI::App& app, Command& chosen) {
     command
         .add_option_function<std::string>(
             "--contact", [&job](const std::string& name) { job.drape.contact = contact_response(name); },
-            "What answers contact while the cloth comes to rest, by docs/responses.md (default barrier)")
+            "What answers contact while the cloth comes to rest, by docs/responses.md (default barrier; impulse for methods that "
+            "move)")
         ->check(CLI::IsMember({"barrier", "constraint", "penalty", "impulse", "rigid"}).description(""))
         ->type_name("barrier|constraint|penalty|impulse|rigid");
+    add_method(command, *a);
     command
         .add_option("--hold", job.drape.hold,
                     "Labelled edges held at their height to the end: a label of the file, or waist, collar, "

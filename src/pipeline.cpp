@@ -83,7 +83,7 @@ std::string input_hash(const DrapeJob& job) {
     hash.add(job.fabric);
     for (const std::string& word : job.drape.hold)
         hash.add("hold " + word + '\n');
-    hash.add(std::string("contact ") + to_string(job.drape.contact) + '\n');
+    hash.add(std::string("contact ") + to_string(response_of(job.drape)) + '\n');
     for (const double value :
          {job.form.height, job.form.bust, job.form.waist, job.form.hip, job.edge_length, job.drape.tolerance,
           job.drape.clearance, job.drape.friction, job.drape.cloth_friction, job.drape.gravity})

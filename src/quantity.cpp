@@ -33,7 +33,7 @@ std::string show_duration(double seconds) {
 const Quantity length_of_something{
     "a length", "10mm, 1cm or 0.01m", {{"mm", 1, 1000}, {"cm", 1, 100}, {"m", 1, 1}}, show_length};
 const Quantity duration{
-    "a duration", "90s, 5min or 1h", {{"s", 1, 1}, {"min", 60, 1}, {"h", 3600, 1}}, show_duration};
+    "a duration", "90s, 5min or 1h", {{"us", 1, 1e6}, {"ms", 1, 1e3}, {"s", 1, 1}, {"min", 60, 1}, {"h", 3600, 1}}, show_duration};
 const Quantity size_of_memory{
     "a size",
     "500MB or 2GiB",

@@ -14,7 +14,7 @@ namespace toile {
 /// "10mm", "1cm", "0.01m" in metres. Throws CommandLineError when the unit is missing or it is not a length.
 double parse_length(const std::string& text);
 
-/// "90s", "5min", "1h" in seconds. Throws CommandLineError when the unit is missing or it is no duration.
+/// "90s", "5min", "1h", "2ms", "50us" in seconds. Throws CommandLineError when the unit is missing or it is no duration.
 double parse_duration(const std::string& text);
 
 /// "500MB", "500MiB", "2GB", "2GiB" in bytes. Throws CommandLineError when the unit is missing or it is no size.
@@ -24,7 +24,7 @@ double parse_size(const std::string& text);
 void add_length(CLI::App& command, const std::string& name, double& metres, double low, double high,
                 const std::string& help);
 
-/// An option that takes a duration of [low, high] seconds, and is without limit by default.
+/// An option that takes a duration of [low, high] seconds. The help says what it is by default.
 void add_duration(CLI::App& command, const std::string& name, double& seconds, double low, double high,
                   const std::string& help);
 

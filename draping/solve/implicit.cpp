@@ -222,19 +222,14 @@ struct Step {
 
 } // namespace
 
-ImplicitStepper::ImplicitStepper(NodeProblem& problem, Response& response, const StepOptions& options)
-    : problem_(problem), response_(response), options_(options) {}
-
 ResponseDone ImplicitStepper::step(Moving& cloth, const Points& body_end) {
     const std::size_t n = cloth.x.size();
     const double dt = options_.time_step;
     cloth.velocity.resize(n, Vec3::Zero());
     cloth.other_force.resize(n, Vec3::Zero());
     Step one{problem_, response_, cloth, body_end, factor_, analysed_, factorisations_, options_};
-    std::vector<double> inverse_mass(n, 0.0);
-    for (std::size_t i = 0; i < n; ++i)
-        if (!problem_.pinned()[i]) inverse_mass[i] = 1 / one.mass(int(i));
-    const ResponseStep seen{dt, cloth.x, cloth.velocity, inverse_mass, body_end};
+    const std::vector<double> inverse = inverse_mass();
+    const ResponseStep seen{dt, cloth.x, cloth.velocity, inverse, body_end};
     ResponseDone done;
     Points v = cloth.velocity;
     if (response_.known_at_start()) {
@@ -245,7 +240,7 @@ ResponseDone ImplicitStepper::step(Moving& cloth, const Points& body_end) {
     } else {
         v = one.candidate();
         for (std::size_t i = 0; i < n; ++i) // what the response is to do anew
-            v[i] -= dt * inverse_mass[i] * cloth.other_force[i];
+            v[i] -= dt * inverse[i] * cloth.other_force[i];
         slow(v, dt, options_.max_motion);
         done = respond(cloth, response_, seen, v);
         one.take_up(done, v);
@@ -253,18 +248,6 @@ ResponseDone ImplicitStepper::step(Moving& cloth, const Points& body_end) {
     for (std::size_t i = 0; i < n; ++i) cloth.x[i] += dt * v[i];
     cloth.velocity = std::move(v);
     return done;
-}
-
-double ImplicitStepper::residual(const Moving& cloth) { return toile::residual(problem_, cloth); }
-
-double residual(NodeProblem& problem, const Moving& cloth) {
-    problem.arrive(cloth.x);
-    VectorXd g;
-    problem.gradient(cloth.x, g);
-    const Points force = cloth.contact_force();
-    for (int i = 0; i < problem.points(); ++i)
-        if (!problem.pinned()[i]) g.segment<3>(3 * i) -= force[i];
-    return problem.residual(cloth.x, g);
 }
 
 } // namespace toile

@@ -36,16 +36,21 @@ ResponseDone respond(Moving& cloth, Response& response, const ResponseStep& step
 }
 
 ResponseDone go(Moving& cloth, Response& response, const std::vector<double>& inverse_mass, const Points& body_end,
-                const StepOptions& options, Points v) {
+                const StepOptions& options, Points v, Points end) {
     const double dt = options.time_step;
     cloth.velocity.resize(cloth.x.size(), Vec3::Zero());
     slow(v, dt, options.max_motion);
+    slow(end, dt, options.max_motion);
+    const Points without = v;
     ResponseDone done = respond(cloth, response, {dt, cloth.x, cloth.velocity, inverse_mass, body_end}, v);
     cloth.touches.clear();
     for (const Touch& t : done.touches) cloth.touches.push_back({t});
     cloth.other_force = done.other_force;
-    for (std::size_t i = 0; i < cloth.x.size(); ++i) cloth.x[i] += dt * v[i];
-    cloth.velocity = std::move(v);
+    for (std::size_t i = 0; i < cloth.x.size(); ++i) {
+        cloth.x[i] += dt * v[i];
+        end[i] += v[i] - without[i];
+    }
+    cloth.velocity = std::move(end);
     return done;
 }
 
@@ -55,11 +60,20 @@ RestResult come_to_rest(Stepper& stepper, Moving& cloth, const Points& body, con
     const std::vector<double>& mass = stepper.node_mass();
     const double all = std::accumulate(mass.begin(), mass.end(), 0.0);
     while (r.steps < options.max_steps) {
-        const ResponseDone done = stepper.step(cloth, body);
+        const Points before = cloth.x;
+        ResponseDone done;
+        try {
+            done = stepper.step(cloth, body);
+        } catch (const std::runtime_error& error) {
+            r.broken = error.what();
+            break;
+        }
         ++r.steps;
         r.unresolved += done.unresolved > 0;
         r.residual = stepper.residual(cloth);
-        r.speed = std::sqrt(2 * kinetic_energy(mass, cloth) / all);
+        double sum = 0;
+        for (std::size_t i = 0; i < mass.size(); ++i) sum += mass[i] * (cloth.x[i] - before[i]).squaredNorm();
+        r.speed = std::sqrt(sum / all) / stepper.options().time_step;
         r.rested = r.residual <= options.tolerance && r.speed <= options.speed;
         r.stopped = options.progress && !options.progress(r.steps, r.residual);
         if (r.rested || r.stopped) break;

@@ -8,6 +8,7 @@
 #include "draping/energy/loads.h"
 
 #include <functional>
+#include <string>
 
 namespace toile {
 
@@ -65,9 +66,14 @@ void slow(Points& v, double dt, double max_motion);
 ResponseDone respond(Moving& cloth, Response& response, const ResponseStep& step, Points& v);
 
 /// The end of a step whose velocities without contact are `v`: slowed, corrected by the response, and gone. What
-/// contact did is then with the cloth. `inverse_mass`: 1/kg, 0 for what is pinned.
+/// contact did is then with the cloth. A method whose velocity at the end of the step is not the one that brought it there
+/// gives it as `end`, which is then slowed and corrected by the same. `inverse_mass`: 1/kg, 0 for what is pinned.
 ResponseDone go(Moving& cloth, Response& response, const std::vector<double>& inverse_mass, const Points& body_end,
-                const StepOptions& options, Points v);
+                const StepOptions& options, Points v, Points end);
+inline ResponseDone go(Moving& cloth, Response& response, const std::vector<double>& inverse_mass, const Points& body_end,
+                       const StepOptions& options, const Points& v) {
+    return go(cloth, response, inverse_mass, body_end, options, v, v);
+}
 
 struct RestOptions {
     double tolerance = 1e-3; ///< residual at rest
@@ -81,10 +87,11 @@ struct RestResult {
     bool rested = false;  ///< both the forces and the speed are below what was asked for
     bool stopped = false; ///< by the caller
     double residual = 0;
-    double speed = 0;   ///< m/s, root of the mean square over the mass
+    double speed = 0;   ///< m/s by which the last step moved the cloth, root of the mean square over the mass
     int steps = 0;
     int factorisations = 0;
     int unresolved = 0; ///< steps in which a pair touched
+    std::string broken; ///< why there was no next step: the cloth is where it was before it. Empty: there was
 };
 
 /// Steps with the body at rest at `body` until the cloth is.

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/method.h"
+
+#include "draping/cloth.h"
+#include "draping/energy/spring_mesh.h"
+#include "draping/solve/free_cloth.h"
+#include "draping/solve/implicit.h"
+#include "draping/solve/limited.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace toile {
+
+namespace {
+
+std::unique_ptr<NodeProblem> free_cloth(std::unique_ptr<Energy> energy, std::vector<double> mass,
+                                        const std::vector<char>& pinned) {
+    auto problem = std::make_unique<FreeCloth>(std::move(energy), std::move(mass));
+    for (std::size_t i = 0; i < pinned.size(); ++i)
+        if (pinned[i]) problem->pin(int(i));
+    return problem;
+}
+
+std::unique_ptr<Stepper> spring_stepper(Method method, const Garment& garment, const std::vector<Fabric>& fabrics,
+                                        const std::vector<char>& pinned, Response& response, StepOptions step,
+                                        const MethodOptions& options) {
+    const SpringMeshOptions how{options.spring_damping, method == Method::springs_biphasic ? options.beyond : 1};
+    const std::vector<Spring> springs = mesh_springs(garment, fabrics, how);
+    auto problem = free_cloth(std::make_unique<Springs>(springs), node_masses(garment, fabrics), pinned);
+    if (method == Method::springs_implicit || method == Method::springs_biphasic) {
+        if (options.time_step > 0) step.time_step = options.time_step;
+        return std::make_unique<ImplicitStepper>(std::move(problem), response, step);
+    }
+    step.time_step = std::max(step.time_step, options.time_step);
+    std::unique_ptr<ExplicitStepper> stepper;
+    if (method == Method::springs_limited)
+        stepper = std::make_unique<LimitedStepper>(std::move(problem), springs, response, step, options.limits);
+    else
+        stepper = std::make_unique<ExplicitStepper>(std::move(problem), response, step);
+    stepper->substep = options.time_step;
+    return stepper;
+}
+
+} // namespace
+
+const std::vector<Method>& all_methods() {
+    static const std::vector<Method> all{Method::equilibrium, Method::springs_explicit, Method::springs_implicit,
+                                         Method::springs_biphasic, Method::springs_limited};
+    return all;
+}
+
+const char* to_string(Method m) {
+    switch (m) {
+    case Method::equilibrium: return "equilibrium";
+    case Method::springs_explicit: return "springs-explicit";
+    case Method::springs_implicit: return "springs-implicit";
+    case Method::springs_biphasic: return "springs-biphasic";
+    case Method::springs_limited: return "springs-limited";
+    }
+    return "equilibrium";
+}
+
+Method method_called(const std::string& name) {
+    std::string names;
+    for (const Method m : all_methods()) {
+        if (name == to_string(m)) return m;
+        names += (names.empty() ? "" : ", ") + std::string(to_string(m));
+    }
+    throw std::invalid_argument("there is no method '" + name + "', the methods are " + names);
+}
+
+std::unique_ptr<Stepper> make_stepper(Method method, const Garment& garment, const std::vector<Fabric>& fabrics,
+                                      const std::vector<char>& pinned, Response& response, const StepOptions& step,
+                                      const MethodOptions& options) {
+    switch (method) {
+    case Method::springs_explicit:
+    case Method::springs_implicit:
+    case Method::springs_biphasic:
+    case Method::springs_limited:
+        return spring_stepper(method, garment, fabrics, pinned, response, step, options);
+    case Method::equilibrium: break;
+    }
+    throw std::invalid_argument(std::string("the method ") + to_string(method) + " has no steps in time");
+}
+
+} // namespace toile

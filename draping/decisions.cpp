@@ -54,10 +54,11 @@ std::string response_sentence(const DrapeFacts& f) {
 }
 
 std::string method_sentence(const DrapeFacts& f) {
-    return text("the levels came to rest by the method \"%s\", as far as they did; placing and sewing had the membrane and the "
-                "plate of equilibrium. What holds strains within the fabric's limits there was left out%s",
-                to_string(f.method),
-                f.method == Method::springs_limited ? ", but for limits on the elongation of springs, swept over once a step" : "");
+    const char* limits = f.method == Method::springs_limited    ? "springs beyond the fabric's limits were shortened in sweeps"
+                         : f.method == Method::springs_biphasic ? "springs become stiffer at the fabric's limits"
+                                                                : "nothing held strains within the fabric's limits";
+    return text("the levels were brought to rest by the method \"%s\" instead of equilibrium, which sewed and placed the cloth; %s",
+                to_string(f.method), limits);
 }
 
 std::string level_sentence(const DrapeFacts& f) {
@@ -92,7 +93,7 @@ std::string growth_sentence(const DrapeFacts& f) {
     return "the body was drawn in and grew back under contact, since the cloth started in it: " + list;
 }
 
-void limit_sentences(const Garment& g, const Points& x, const PanelFabrics& fabrics,
+void limit_sentences(bool modelled, const Garment& g, const Points& x, const PanelFabrics& fabrics,
                      std::vector<std::string>& out) {
     const StrainMeasure s = measure_strain(g, x, fabrics);
     std::vector<std::string> without;
@@ -105,8 +106,8 @@ void limit_sentences(const Garment& g, const Points& x, const PanelFabrics& fabr
                       text("%.1f %% (warp) and %.1f %% (weft)", 100 * s.warp.max, 100 * s.weft.max));
     const auto reached = [&](double most, double limit, double unit, const char* what, const char* sign) {
         if (limit <= 0) return;
-        out.push_back(text("the limit of %s was modelled: the largest is %.3g of %.3g %s", what, unit * most,
-                           unit * limit, sign));
+        out.push_back(text("the limit of %s was %s: the largest is %.3g of %.3g %s", what,
+                           modelled ? "modelled" : "left to the method", unit * most, unit * limit, sign));
     };
     const double shear = std::max(std::abs(s.shear.min), std::abs(s.shear.max));
     reached(s.warp.max, s.limit_warp, 100, "warp strain", "%");
@@ -179,7 +180,7 @@ std::vector<std::string> decisions(const DrapeFacts& f, const Garment& g, const 
         out.push_back(text("%d stitches to the inside of an edge stayed springs, the widest %.2g mm open; "
                            "triangles that such a stitch joins do not touch each other",
                            f.inner_stitches, 1e3 * f.inner_gap));
-    limit_sentences(g, x, fabrics, out);
+    limit_sentences(!moves(f.method), g, x, fabrics, out);
     if (!body.triangles.empty())
         out.push_back(text("the fabric's right side looks away from the body on %.1f %% of the area",
                            100 * right_side_out(g, x, body)));

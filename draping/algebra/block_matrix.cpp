@@ -45,18 +45,6 @@ int BlockMatrix::find(int i, int j) const {
     return it != end && *it == i ? int(it - row_.begin()) : -1;
 }
 
-Mat3 BlockMatrix::block(int j, int slot) const {
-    Mat3 m;
-    for (int c = 0; c < 3; ++c) {
-        const int below = slot == column_[j] ? c : 0; // the diagonal's upper half is not stored
-        const double* column = value_.data() + scalar_column_[3 * j + c] + 3 * (slot - column_[j]) - c;
-        for (int r = below; r < 3; ++r) m(r, c) = column[r];
-        if (slot == column_[j])
-            for (int r = 0; r < c; ++r) m(r, c) = m(c, r);
-    }
-    return m;
-}
-
 void BlockMatrix::set_zero() { std::fill(value_.begin(), value_.end(), 0.0); }
 
 void BlockMatrix::add_to_diagonal(const Eigen::VectorXd& d) {

@@ -24,9 +24,6 @@ public:
     /// Slot of block (i, j), i >= j; -1 when the pattern has no such block.
     int find(int i, int j) const;
 
-    /// Block at `slot` of block column j, that of the diagonal with both halves.
-    Mat3 block(int j, int slot) const;
-
     void set_zero();
 
     /// Adds `a` to block (i, j), i > j, at `slot` = find(i, j).

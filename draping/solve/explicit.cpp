@@ -15,8 +15,12 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double margin = 0.93;   // of the sharp bound, which is found from its wrong side and moves within a step
-constexpr double renewed = 0.01;  // change of the safe bound, from which on the sharp one is found again
+constexpr double shorter = 0.9;   // times a substep that turned out too long
 constexpr double blown_up = 1000; // times the largest motion of a step, from which on it is no motion any more
+
+bool is_finite(const Points& x) {
+    return std::all_of(x.begin(), x.end(), [](const Vec3& p) { return p.allFinite(); });
+}
 
 /// The rate of the vector between the places that touch.
 Vec3 rate(const Touch& t, const Points& v, const Points& body_velocity) {
@@ -39,14 +43,7 @@ void add_held(std::vector<HeldTouch>& touches, const std::vector<HeldTouch>& hel
 
 } // namespace
 
-double ExplicitStepper::stable_substep(const Points& x) {
-    const double safe = gershgorin(problem_, x).step();
-    if (!(std::abs(safe - safe_) <= renewed * safe_)) {
-        safe_ = safe;
-        stable_ = std::max(safe, margin * lanczos(problem_, x).step());
-    }
-    return stable_;
-}
+double ExplicitStepper::stable_substep(const Points& x) { return margin * fastest(problem_, x).step(); }
 
 void ExplicitStepper::hold_touches(const Moving& cloth, Points& v, const Points& body_velocity, Points& impulse) const {
     const int n = int(v.size());
@@ -69,41 +66,54 @@ void ExplicitStepper::hold_touches(const Moving& cloth, Points& v, const Points&
     }
 }
 
+void ExplicitStepper::go_on(const Moving& cloth, const Points& body_velocity, Motion& m) {
+    const int n = problem_.points();
+    const double h = options_.time_step / count_;
+    const std::vector<double> inverse = inverse_mass();
+    m = {cloth.x, cloth.velocity, Points(cloth.touches.size(), Vec3::Zero())};
+    VectorXd g, friction;
+    begin_step(cloth.x);
+    for (int k = 0; k < count_; ++k) {
+        problem_.arrive(m.x);
+        problem_.gradient(m.x, g);
+        problem_.damping(m.x, m.v, friction);
+        for (int i = 0; i < n; ++i)
+            m.v[i] = (m.v[i] + h * inverse[i] * (friction - g).segment<3>(3 * i)) / (1 + options_.damping * h);
+        hold_touches(cloth, m.v, body_velocity, m.impulse);
+        for (int i = 0; i < n; ++i) m.x[i] += h * m.v[i];
+        constrain(m.x, m.v, h);
+    }
+}
+
 ResponseDone ExplicitStepper::step(Moving& cloth, const Points& body_end) {
     const int n = problem_.points();
     const double dt = options_.time_step;
     cloth.velocity.resize(n, Vec3::Zero());
-    const double stable = stable_substep(cloth.x), wanted = substep > 0 ? substep : stable;
-    count_ = std::max(1, int(std::ceil(dt / wanted - 1e-9)));
-    const double h = dt / count_;
-
-    Points x = cloth.x, v = cloth.velocity, body_velocity(body_end.size());
+    Points body_velocity(body_end.size());
     for (std::size_t i = 0; i < body_end.size(); ++i) body_velocity[i] = (body_end[i] - response_.body()[i]) / dt;
-    const std::vector<double> inverse = inverse_mass();
-    Points impulse(cloth.touches.size(), Vec3::Zero());
-    VectorXd g, friction;
-    begin_step(cloth.x);
-    for (int k = 0; k < count_; ++k) {
-        problem_.arrive(x);
-        problem_.gradient(x, g);
-        problem_.damping(x, v, friction);
-        for (int i = 0; i < n; ++i)
-            v[i] = (v[i] + h * inverse[i] * (friction - g).segment<3>(3 * i)) / (1 + options_.damping * h);
-        hold_touches(cloth, v, body_velocity, impulse);
-        for (int i = 0; i < n; ++i) x[i] += h * v[i];
-        constrain(x, v, h);
+
+    if (stable_ == 0) stable_ = stable_substep(cloth.x);
+    double wanted = substep > 0 ? substep : stable_;
+    Motion m;
+    for (;;) {
+        count_ = std::max(1, int(std::ceil(dt / wanted - 1e-9)));
+        go_on(cloth, body_velocity, m);
+        if (substep > 0 || !is_finite(m.x)) break;
+        stable_ = stable_substep(m.x);
+        if (dt / count_ <= stable_) break;
+        wanted = std::min(stable_, shorter * dt / count_); // the cloth became stiffer on its way
     }
     Points mean(n);
-    for (int i = 0; i < n; ++i) {
-        mean[i] = (x[i] - cloth.x[i]) / dt;
-        if (!(dt * mean[i].norm() < blown_up * options_.max_motion && std::isfinite(v[i].squaredNorm())))
+    for (int i = 0; i < n; ++i) mean[i] = (m.x[i] - cloth.x[i]) / dt;
+    for (int i = 0; i < n; ++i)
+        if (!(dt * mean[i].norm() < blown_up * options_.max_motion && std::isfinite(m.v[i].squaredNorm())))
             throw std::runtime_error(text("the motion of the cloth blew up: its explicit steps are %.3g s long, and stable up to "
                                           "about %.3g s",
-                                          h, stable));
-    }
+                                          dt / count_, stable_));
     std::vector<HeldTouch> held = cloth.touches;
-    for (std::size_t k = 0; k < held.size(); ++k) held[k].touch.force = impulse[k] / dt;
-    const ResponseDone done = go(cloth, response_, inverse, body_end, options_, std::move(mean), std::move(v));
+    for (std::size_t k = 0; k < held.size(); ++k) held[k].touch.force = m.impulse[k] / dt;
+    const ResponseDone done =
+        go(cloth, response_, inverse_mass(), body_end, options_, std::move(mean), std::move(m.v));
     add_held(cloth.touches, held);
     return done;
 }

@@ -13,8 +13,8 @@ class ExplicitStepper : public ProblemStepper {
 public:
     using ProblemStepper::ProblemStepper;
 
-    /// s; 0: as long as is stable, by Fastest::step() with a margin, found anew when the cloth has become stiffer or softer. A
-    /// longer one blows up, which ends step() with std::runtime_error.
+    /// s; 0: as long as is stable where the step begins and where it ends, by Fastest::step() with a margin. A longer one blows
+    /// up, which ends step() with std::runtime_error.
     double substep = 0;
 
     ResponseDone step(Moving& cloth, const Points& body_end) override;
@@ -28,9 +28,13 @@ protected:
     virtual void begin_step(const Points& x) { (void)x; }
 
 private:
+    struct Motion {
+        Points x, v, impulse; ///< m and m/s per node, N s per touch
+    };
+    void go_on(const Moving& cloth, const Points& body_velocity, Motion& m);
     void hold_touches(const Moving& cloth, Points& v, const Points& body_velocity, Points& impulse) const;
 
-    double safe_ = 0, stable_ = 0; ///< Gershgorin's bound when the sharp one was last found, and that
+    double stable_ = 0; ///< s, substep that is stable where the last step ended; 0: unknown
     int count_ = 0;
 };
 

@@ -11,9 +11,9 @@ namespace toile {
 /// What steppers over a NodeProblem have in common. Keeps references to problem and response.
 class ProblemStepper : public Stepper {
 public:
-    ProblemStepper(NodeProblem& problem, Response& response, const StepOptions& options);
+    ProblemStepper(NodeProblem& problem, Response& response, const StepOptions& options = {});
     /// The same with a problem of its own.
-    ProblemStepper(std::unique_ptr<NodeProblem> problem, Response& response, const StepOptions& options);
+    ProblemStepper(std::unique_ptr<NodeProblem> problem, Response& response, const StepOptions& options = {});
 
     double residual(const Moving& cloth) override;
     int worst_node() const override { return problem_.worst_node(); }

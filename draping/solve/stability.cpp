@@ -22,24 +22,6 @@ VectorXd scaling(const NodeProblem& problem) {
     return s;
 }
 
-/// Not less than the largest singular value.
-double size(const Mat3& m) {
-    const double rows = m.cwiseAbs().rowwise().sum().maxCoeff(), columns = m.cwiseAbs().colwise().sum().maxCoeff();
-    return std::min(m.norm(), std::sqrt(rows * columns));
-}
-
-double row_bound(const BlockMatrix& a, const VectorXd& scale) {
-    VectorXd sum = VectorXd::Zero(a.block_rows());
-    for (int j = 0; j < a.block_rows(); ++j)
-        for (int slot = a.block_columns()[j]; slot < a.block_columns()[j + 1]; ++slot) {
-            const int i = a.block_row_indices()[slot];
-            const double bound = scale[3 * i] * scale[3 * j] * size(a.block(j, slot));
-            sum[i] += bound;
-            if (i != j) sum[j] += bound;
-        }
-    return sum.size() > 0 ? sum.maxCoeff() : 0;
-}
-
 /// Largest eigenvalue of S A S.
 double largest(const BlockMatrix& a, const VectorXd& scale) {
     const Eigen::Index n = scale.size();
@@ -68,28 +50,21 @@ double largest(const BlockMatrix& a, const VectorXd& scale) {
     return std::max(0.0, solver.eigenvalues().maxCoeff());
 }
 
-template <class Measure>
-Fastest measured(NodeProblem& problem, const Points& x, Measure measure) {
+} // namespace
+
+double Fastest::step() const { return 4 / (damping + std::sqrt(damping * damping + 4 * stiffness)); }
+
+Fastest fastest(NodeProblem& problem, const Points& x) {
     bool changed = false;
     problem.arrive(x);
     BlockMatrix& a = problem.hessian(x, false, changed);
     const VectorXd scale = scaling(problem);
     Fastest f;
-    f.stiffness = measure(a, scale);
+    f.stiffness = largest(a, scale);
     a.set_zero();
     problem.add_damping_matrix(x, 1, a);
-    f.damping = measure(a, scale);
+    f.damping = largest(a, scale);
     return f;
 }
-
-} // namespace
-
-double Fastest::step() const {
-    return 4 / (damping + std::sqrt(damping * damping + 4 * stiffness));
-}
-
-Fastest gershgorin(NodeProblem& problem, const Points& x) { return measured(problem, x, row_bound); }
-
-Fastest lanczos(NodeProblem& problem, const Points& x) { return measured(problem, x, largest); }
 
 } // namespace toile

@@ -9,7 +9,7 @@ namespace toile {
 
 /// Of M^-1 K and M^-1 D over the nodes that are not pinned, K positive semidefinite.
 struct Fastest {
-    double stiffness = 0; ///< 1/s2, largest eigenvalue, or a bound of it: the highest frequency squared
+    double stiffness = 0; ///< 1/s2, largest eigenvalue: the highest frequency squared
     double damping = 0;   ///< 1/s
 
     /// The longest step that is stable, s: w^2 dt^2 + 2 d dt = 4, which is 2 / w without damping. Sharp when both are reached
@@ -17,10 +17,7 @@ struct Fastest {
     double step() const;
 };
 
-/// Gershgorin's bound by blocks: never too low.
-Fastest gershgorin(NodeProblem& problem, const Points& x);
-
 /// By the method of Lanczos, which comes from below; off by less than a percent on sheets.
-Fastest lanczos(NodeProblem& problem, const Points& x);
+Fastest fastest(NodeProblem& problem, const Points& x);
 
 } // namespace toile

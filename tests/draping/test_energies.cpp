@@ -5,6 +5,8 @@
 #include "draping/energy/bend.h"
 #include "draping/energy/elastic.h"
 #include "draping/energy/spring.h"
+#include "draping/energy/spring_grid.h"
+#include "draping/energy/spring_mesh.h"
 #include "draping/energy/stretch.h"
 
 #include "tests/support/energy_checks.h"
@@ -244,6 +246,28 @@ void add_elastic(std::vector<EnergyCase>& cases) {
         cases.push_back({energy, state});
 }
 
+// ---- springs between all nodes
+
+void add_models(std::vector<EnergyCase>& cases) {
+    Fabric f = woven();
+    const auto energy = [](const std::string& name, const std::vector<Spring>& springs) {
+        const Springs all(springs);
+        return block_energy(
+            name, [=](const Points& x) { return all.value(x); },
+            [=](const Points& x, VectorXd& g) { all.add_gradient(x, g); },
+            [=](const Points& x, HessianKind kind, BlockMatrix& h) { all.add_hessian(x, kind, h); });
+    };
+    const Garment g = garment_of(mesh(), 0.3);
+    for (const TestedState& state : tested_states(mesh())) {
+        cases.push_back({energy("springs", mesh_springs(g, {f})), state});
+        cases.push_back({energy("springs of two phases", mesh_springs(g, {f}, {0, 8})), state});
+    }
+    const SpringGrid grid{5, 4, 0.05};
+    for (const Diagonals diagonals : {Diagonals::both, Diagonals::one})
+        cases.push_back({energy("grid", grid_springs(grid, {900, 700, 80, 1e-2, 2e-2}, diagonals)),
+                         {"shaken", shaken(grid_points(grid), 4e-3, 9)}});
+}
+
 // ---- all of them together, as the solver meets them
 
 void add_problem(std::vector<EnergyCase>& cases) {
@@ -287,6 +311,7 @@ std::vector<EnergyCase> every_energy() {
     add_cloth_friction(cases);
     add_springs(cases);
     add_elastic(cases);
+    add_models(cases);
     add_problem(cases);
     return cases;
 }
@@ -296,4 +321,24 @@ std::vector<EnergyCase> every_energy() {
 TEST_CASE("energies: gradient and Hessian by finite differences, rigid motions, convex model", "[energies]") {
     for (const EnergyCase& c : every_energy())
         check_energy(c);
+}
+
+TEST_CASE("energies: friction within springs acts along them, and its matrix is its derivative", "[energies]") {
+    std::vector<Spring> all = mesh_springs(garment_of(mesh(), 0.3), {woven()}, {1e-3, 1});
+    const Springs springs(all);
+    Points x = shaken(flat_points(mesh()), 3e-3, 2), v = shaken(Points(x.size(), Vec3::Zero()), 0.1, 4);
+    VectorXd force = VectorXd::Zero(3 * x.size());
+    springs.add_damping(x, v, force);
+    BlockMatrix d = full_matrix(int(x.size()));
+    springs.add_damping_matrix(x, 2.5, d);
+    CHECK(force.norm() > 0);
+    CHECK((force + dense(d) * flat(v) / 2.5).norm() < 1e-12 * force.norm()); // linear in the velocities
+    CHECK(force.dot(flat(v)) < 0);
+    const VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense(d)).eigenvalues();
+    CHECK(values[0] > -1e-10 * values[values.size() - 1]);
+    // Motion as a rigid body meets none.
+    for (std::size_t i = 0; i < x.size(); ++i) v[i] = Vec3(0.3, 0, 0.1) + Vec3(1, 2, 3).cross(x[i]);
+    VectorXd rigid = VectorXd::Zero(3 * x.size());
+    springs.add_damping(x, v, rigid);
+    CHECK(rigid.norm() < 1e-10 * force.norm());
 }

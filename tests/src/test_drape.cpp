@@ -154,3 +154,49 @@ TEST_CASE("every response to contact drapes, and the report says what it promise
     }
     CHECK(run_toile({"drape", tee, "--contact", "rubber", "--json"}).code == 1);
 }
+
+TEST_CASE("every method drapes, says what it is, and what it did not reach", "[methods]") {
+    const TempFolder folder;
+    const Schema schema("report.schema.json");
+    for (const toile::Method method : toile::all_methods()) {
+        const std::string name = to_string(method);
+        INFO(name);
+        const Run r = run_toile({"drape", tee, "--edge-length", "60mm", "--method", name, "--max-seconds", "2s", "--json"});
+        const auto report = nlohmann::json::parse(r.out);
+        CHECK(schema.complaints(r.out) == "");
+        CHECK(report["method"] == name);
+        CHECK(report["contact"]["response"] == (moves(method) ? "impulse" : "barrier"));
+        CHECK(r.code == (report["status"] == "converged" ? 0 : 3));
+        CHECK(report["intersections"]["cloth_avatar"] == 0);
+        bool told = false;
+        for (const auto& sentence : report["decisions"])
+            told = told || sentence.get<std::string>().find("method \"" + name) != std::string::npos;
+        CHECK(told == moves(method));
+    }
+}
+
+TEST_CASE("steps in time that are too long end a drape in a sentence", "[methods]") {
+    const Run r = run_toile({"drape", tee, "--edge-length", "60mm", "--method", "springs-explicit", "--time-step", "20ms", "--json"});
+    CHECK(r.code == 3);
+    const auto report = nlohmann::json::parse(r.out);
+    CHECK(report["status"] == "stalled");
+    CHECK_THAT(report["where"].get<std::string>(), Contains("blew up") && Contains("stable"));
+}
+
+TEST_CASE("options that a method would ignore are refused", "[methods]") {
+    for (const std::vector<std::string>& wrong : std::vector<std::vector<std::string>>{
+             {"--method", "felt"},
+             {"--method", "springs-explicit", "--contact", "barrier"},
+             {"--time-step", "1ms"},
+             {"--sweep", "from-top"},
+             {"--method", "springs-implicit", "--limit", "stretch"},
+             {"--method", "springs-limited", "--sweep", "somehow"},
+             {"--method", "springs-limited", "--avatar-sequence", "frames"}}) {
+        std::vector<std::string> words{"drape", tee, "--json"};
+        words.insert(words.end(), wrong.begin(), wrong.end());
+        const Run r = run_toile(words);
+        INFO(r.err);
+        CHECK(r.code == 1);
+        CHECK(one_sentence(r.err));
+    }
+}

@@ -185,7 +185,7 @@ DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabri
                   const DrapeOptions& options) {
     DrapeRun run{.staging = staging, .avatar = avatar.body, .fabrics = fabrics, .options = options};
     run.result.residual = std::numeric_limits<double>::infinity();
-    run.result.method = options.method;
+    run.result.method = run.facts.method = options.method;
     run.result.contact.response = response_of(options);
     run.result.tolerance = options.tolerance;
     run.result.friction = {options.friction, options.cloth_friction};

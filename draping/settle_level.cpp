@@ -61,7 +61,6 @@ void note_release(DrapeRun& run) {
 void note_facts(DrapeRun& run, const Loads& loads, const TouchFacts& touch) {
     DrapeFacts& f = run.facts;
     f.touch = touch;
-    f.method = run.options.method;
     f.contact = run.result.contact;
     f.friction = run.result.friction;
     f.clearance = run.options.clearance;

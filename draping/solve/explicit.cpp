@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 constexpr double margin = 0.93;   // of the sharp bound, which is found from its wrong side and moves within a step
 constexpr double shorter = 0.9;   // times a substep that turned out too long
-constexpr double blown_up = 1000; // times the largest motion of a step, from which on it is no motion any more
+constexpr double blown_up = 20;   // times the largest motion of a step: slowing must not hide what grows without bounds
 
 bool is_finite(const Points& x) {
     return std::all_of(x.begin(), x.end(), [](const Vec3& p) { return p.allFinite(); });

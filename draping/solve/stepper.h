@@ -42,7 +42,7 @@ public:
     virtual ~Stepper() = default;
 
     /// One step, at whose end the points of the body are at `body_end`. Throws std::runtime_error when the motion is no
-    /// longer finite.
+    /// longer finite or has blown up.
     virtual ResponseDone step(Moving& cloth, const Points& body_end) = 0;
 
     /// Largest force on a node that neither contact nor what the method itself holds answered in the last step, as

@@ -156,12 +156,11 @@ TEST_CASE("every response to contact drapes, and the report says what it promise
 }
 
 TEST_CASE("every method drapes, says what it is, and what it did not reach", "[methods]") {
-    const TempFolder folder;
     const Schema schema("report.schema.json");
-    for (const toile::Method method : toile::all_methods()) {
+    for (const Method method : all_methods()) {
         const std::string name = to_string(method);
         INFO(name);
-        const Run r = run_toile({"drape", tee, "--edge-length", "60mm", "--method", name, "--max-seconds", "2s", "--json"});
+        const Run r = run_toile({"drape", tee, "--edge-length", "60mm", "--method", name, "--max-seconds", "1.5s", "--json"});
         const auto report = nlohmann::json::parse(r.out);
         CHECK(schema.complaints(r.out) == "");
         CHECK(report["method"] == name);
@@ -176,7 +175,8 @@ TEST_CASE("every method drapes, says what it is, and what it did not reach", "[m
 }
 
 TEST_CASE("steps in time that are too long end a drape in a sentence", "[methods]") {
-    const Run r = run_toile({"drape", tee, "--edge-length", "60mm", "--method", "springs-explicit", "--time-step", "20ms", "--json"});
+    const Run r = run_toile({"drape", tee, "--edge-length", "60mm", "--method", "springs-explicit", "--time-step", "20ms",
+                             "--max-seconds", "20s", "--json"});
     CHECK(r.code == 3);
     const auto report = nlohmann::json::parse(r.out);
     CHECK(report["status"] == "stalled");

@@ -225,7 +225,7 @@ TEST_CASE("springs: explicit steps never exceed by themselves what is stable, an
     s.problem.gravity = 9.81;
     s.problem.pin(0);
     bool was_stiff = false;
-    for (int i = 0; i < 60; ++i) {
+    for (int i = 0; i < 100; ++i) {
         s.step();
         const double substep = 2e-3 / s.stepper.substeps();
         bool changed = false;
@@ -385,7 +385,7 @@ TEST_CASE("springs: limits hold their springs, and the order of the sweep tells"
         NoContact response;
         LimitedStepper stepper(std::move(problem), springs, response, {2e-3, 5, 1e9}, limits);
         Moving cloth{grid_points(sheet)};
-        for (int i = 0; i < 200; ++i) stepper.step(cloth, {});
+        for (int i = 0; i < 400; ++i) stepper.step(cloth, {});
         return cloth.x;
     };
     LimitOptions none;

@@ -48,7 +48,7 @@ ResponseDone go(Moving& cloth, Response& response, const std::vector<double>& in
     cloth.other_force = done.other_force;
     for (std::size_t i = 0; i < cloth.x.size(); ++i) {
         cloth.x[i] += dt * v[i];
-        if (v[i] != without[i]) end[i] = v[i]; // kept, what drove it against its hindrance would drive it anew every step
+        end[i] += v[i] - without[i];
     }
     cloth.velocity = std::move(end);
     return done;

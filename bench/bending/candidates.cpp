@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/bending/candidates.h"
 
+#include "draping/energy/hinge.h"
+
 #include <Eigen/Dense>
 
 #include <chrono>
@@ -50,64 +52,18 @@ Term squares_term(const std::vector<Square>& squares) {
             }};
 }
 
-// Two triangles on an edge: ends 0 and 1, far corners 2 (left, seen along 0 -> 1) and 3.
-struct Hinge {
-    int edge;
-    std::array<int, 4> nodes;
-    std::array<int, 2> triangle;
-};
-
-std::vector<Hinge> hinges_of(const Garment& garment) {
-    std::vector<Hinge> hinges;
-    for (int e = 0; e < garment.edges.size(); ++e) {
-        if (garment.edges.triangles_at(e) != 2) continue;
-        Hinge hinge;
-        hinge.edge = e;
-        for (int side = 0; side < 2; ++side) {
-            const int t = garment.edges.incident[garment.edges.first[e] + side];
-            hinge.triangle[side] = t;
-            for (int k = 0; k < 3; ++k)
-                if (garment.edges.of_triangle[t][k] == e) {
-                    hinge.nodes[2 + side] = garment.triangles[t][k];
-                    if (side == 0) {
-                        hinge.nodes[0] = garment.triangles[t][(k + 1) % 3];
-                        hinge.nodes[1] = garment.triangles[t][(k + 2) % 3];
-                    }
-                }
-        }
-        hinges.push_back(hinge);
-    }
-    return hinges;
-}
-
 double area_of(const Garment& garment, int t) {
     return 0.5 * std::abs(garment.rest.edges[t].determinant());
 }
 
 double hinge_area(const Garment& garment, const Hinge& hinge) {
-    return area_of(garment, hinge.triangle[0]) + area_of(garment, hinge.triangle[1]);
+    return area_of(garment, hinge.triangles[0]) + area_of(garment, hinge.triangles[1]);
 }
 
-// Dihedral angle and its gradient.
-struct Angle {
-    double value = 0;
-    std::array<Vec3, 4> gradient;
-};
-
-Angle angle_of(const std::array<int, 4>& nodes, const VectorXd& q) {
+HingeAngle angle_of(const std::array<int, 4>& nodes, const VectorXd& q) {
     std::array<Vec3, 4> x;
-    for (int i = 0; i < 4; ++i)
-        x[i] = q.segment<3>(3 * nodes[i]);
-    const Vec3 e = x[1] - x[0], n0 = e.cross(x[2] - x[0]), n1 = (x[3] - x[0]).cross(e);
-    const double length = e.norm();
-    Angle angle;
-    angle.value = std::atan2(n0.cross(n1).dot(e) / length, n0.dot(n1));
-    angle.gradient[2] = -length / n0.squaredNorm() * n0;
-    angle.gradient[3] = -length / n1.squaredNorm() * n1;
-    const auto place = [&](int far) { return (x[far] - x[0]).dot(e) / e.squaredNorm(); };
-    angle.gradient[0] = -(1 - place(2)) * angle.gradient[2] - (1 - place(3)) * angle.gradient[3];
-    angle.gradient[1] = -place(2) * angle.gradient[2] - place(3) * angle.gradient[3];
-    return angle;
+    for (int i = 0; i < 4; ++i) x[i] = q.segment<3>(3 * nodes[i]);
+    return hinge_angle(x);
 }
 
 Term hinge_term(const Garment& garment, double d) {
@@ -124,14 +80,14 @@ Term hinge_term(const Garment& garment, double d) {
             },
             [=](const VectorXd& q, VectorXd& g) {
                 for (std::size_t i = 0; i < hinges.size(); ++i) {
-                    const Angle angle = angle_of(hinges[i].nodes, q);
+                    const HingeAngle angle = angle_of(hinges[i].nodes, q);
                     for (int a = 0; a < 4; ++a)
                         g.segment<3>(3 * hinges[i].nodes[a]) += weight[i] * angle.value * angle.gradient[a];
                 }
             },
             [=](const VectorXd& q, HessianKind, Entries& entries) { // Gauss-Newton; exact where flat
                 for (std::size_t i = 0; i < hinges.size(); ++i) {
-                    const Angle angle = angle_of(hinges[i].nodes, q);
+                    const HingeAngle angle = angle_of(hinges[i].nodes, q);
                     for (int a = 0; a < 12; ++a)
                         for (int b = 0; b < 12; ++b)
                             entries.emplace_back(
@@ -166,7 +122,7 @@ MidEdgeResidual residual_of(const MidEdge& m, int t, const VectorXd& q, int firs
         double turn = side.sign * q[first_extra + side.edge];
         r.derivative.emplace_back(first_extra + side.edge, side.sign * side.turn);
         if (hinge.edge >= 0) {
-            const Angle angle = angle_of(hinge.nodes, q);
+            const HingeAngle angle = angle_of(hinge.nodes, q);
             turn += angle.value / 2;
             for (int a = 0; a < 4; ++a)
                 for (int i = 0; i < 3; ++i)
@@ -289,7 +245,7 @@ Discretisation crouzeix_raviart(const Garment& garment, const Fabric& fabric) {
         std::vector<int> at;
         Eigen::Matrix2Xd jump(2, 6); // gradient of the map, first triangle minus second
         for (int side = 0; side < 2; ++side) {
-            const int t = h.triangle[side];
+            const int t = h.triangles[side];
             const Mat2 inverse = garment.rest.edges[t].inverse();
             Eigen::Matrix<double, 2, 3> gradient; // of the barycentric coordinates
             gradient << -(inverse.row(0) + inverse.row(1)).transpose(), inverse.row(0).transpose(),

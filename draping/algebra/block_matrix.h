@@ -41,6 +41,19 @@ public:
             for (int r = c; r < 3; ++r) column[r] += a(r, c);
         }
     }
+    /// Adds the symmetric matrix `a` of an element, three rows per node, whose nodes the pattern couples.
+    template <std::size_t N>
+    void add_element(const std::array<int, N>& nodes, const Eigen::Matrix<double, 3 * int(N), 3 * int(N)>& a) {
+        for (int k = 0; k < int(N); ++k) {
+            add_diagonal(nodes[k], a.template block<3, 3>(3 * k, 3 * k));
+            for (int l = 0; l < k; ++l) {
+                const bool below = nodes[k] > nodes[l];
+                const int row = below ? k : l, column = below ? l : k;
+                add_off_diagonal(nodes[column], find(nodes[row], nodes[column]),
+                                 a.template block<3, 3>(3 * row, 3 * column));
+            }
+        }
+    }
     void add_to_diagonal(const Eigen::VectorXd& d); ///< one entry per scalar row
 
     /// Rows and columns of pinned points become those of the identity: they stay where they are.

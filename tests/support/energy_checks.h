@@ -15,6 +15,7 @@
 #include <Eigen/Dense>
 
 #include <functional>
+#include <memory>
 
 namespace toile::test {
 
@@ -84,6 +85,13 @@ block_energy(const std::string& name, const std::function<double(const Points&)>
                 add_hessian(x, kind, h);
                 return dense(h);
             }};
+}
+
+inline TestedEnergy model_energy(const std::string& name, const std::shared_ptr<const Energy>& model) {
+    return block_energy(
+        name, [model](const Points& x) { return model->value(x); },
+        [model](const Points& x, Eigen::VectorXd& g) { model->add_gradient(x, g); },
+        [model](const Points& x, HessianKind kind, BlockMatrix& h) { model->add_hessian(x, kind, h); });
 }
 
 inline TestedEnergy stretch_energy(const std::string& name, const std::vector<StretchElement>& elements) {

@@ -10,6 +10,7 @@
 #include <Eigen/CholmodSupport>
 
 #include <functional>
+#include <memory>
 
 namespace toile::test {
 
@@ -206,6 +207,29 @@ inline Term bend_term(const Bending& bending, int nodes) {
                     for (Eigen::SparseMatrix<double>::InnerIterator e(bending.stiffness, j); e; ++e)
                         for (int i = 0; i < 3; ++i)
                             entries.emplace_back(3 * e.row() + i, 3 * e.col() + i, e.value());
+            }};
+}
+
+/// Any model of cloth.
+inline Term model_term(const std::shared_ptr<const Energy>& model, int nodes) {
+    std::vector<std::pair<int, int>> pairs;
+    model->couplings(pairs);
+    const auto matrix = std::make_shared<BlockMatrix>(nodes, pairs);
+    return {[=](const Eigen::VectorXd& q) { return model->value(points_of(q, nodes)); },
+            [=](const Eigen::VectorXd& q, Eigen::VectorXd& g) {
+                Eigen::VectorXd part = Eigen::VectorXd::Zero(3 * nodes);
+                model->add_gradient(points_of(q, nodes), part);
+                g.head(3 * nodes) += part;
+            },
+            [=](const Eigen::VectorXd& q, HessianKind kind, Entries& entries) {
+                matrix->set_zero();
+                model->add_hessian(points_of(q, nodes), kind, *matrix);
+                for (int j = 0; j < matrix->rows(); ++j)
+                    for (int k = matrix->scalar_columns()[j]; k < matrix->scalar_columns()[j + 1]; ++k) {
+                        const int i = matrix->scalar_rows()[k];
+                        entries.emplace_back(i, j, matrix->values()[k]);
+                        if (i != j) entries.emplace_back(j, i, matrix->values()[k]);
+                    }
             }};
 }
 

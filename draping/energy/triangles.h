@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// Cloth by triangles as Baraff and Witkin have it (Large Steps in Cloth Simulation, 1998): stretch of warp and weft each
+// by itself, the angle between them, and hinges.
+
+#include "draping/energy/hinge.h"
+
+namespace toile {
+
+/// One triangle, T = [x0 x1 x2] shape its map from the flat cloth to space: with S_u = |T u| - 1 for the unit directions u
+/// of weft and warp, E = A / 2 (k_weft S_weft^2 + k_warp S_warp^2 + shear gamma^2), gamma the departure of the angle between
+/// T weft and T warp from 90 degrees. No coupling of warp and weft (no Poisson effect); compression as stiff as tension.
+struct YarnTriangle {
+    std::array<int, 3> nodes{};
+    Eigen::Matrix<double, 3, 2> shape; ///< columns weft and warp, 1/m
+    double weft = 0, warp = 0, shear = 0; ///< stiffness times area, J
+};
+
+class TriangleCloth final : public Energy {
+public:
+    /// `fabrics` has one entry per panel.
+    TriangleCloth(const Garment& garment, const std::vector<Fabric>& fabrics);
+
+    double value(const Points& x) const override;
+    void add_gradient(const Points& x, Eigen::VectorXd& g) const override;
+    void couplings(std::vector<std::pair<int, int>>& pairs) const override;
+    void add_hessian(const Points& x, HessianKind kind, BlockMatrix& h) const override;
+
+private:
+    std::vector<YarnTriangle> triangles_;
+    std::vector<HingeBend> bends_;
+};
+
+} // namespace toile

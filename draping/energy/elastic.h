@@ -13,6 +13,8 @@ struct ElasticSegment {
     int a = 0, b = 0;
     double rest = 0;      ///< m, relaxed length of the band here, > 0
     double stiffness = 0; ///< N per unit strain
+
+    bool operator==(const ElasticSegment&) const = default;
 };
 
 double value(const std::vector<ElasticSegment>& segments, const Points& x);

@@ -153,6 +153,11 @@ void add_gradient(const std::vector<HingeBend>& bends, const Points& x, Eigen::V
     }
 }
 
+Constraint constraint(const HingeBend& bend, const Points& x) {
+    const HingeAngle angle = hinge_angle(places(bend, x));
+    return {4, bend.nodes, turned(bend, angle.value), angle.gradient, bend.stiffness};
+}
+
 void couplings(const std::vector<HingeBend>& bends, std::vector<std::pair<int, int>>& pairs) {
     for (const HingeBend& b : bends)
         for (int k = 0; k < 4; ++k)

@@ -4,7 +4,7 @@
 // The angle between the two triangles at an edge, and the bending of Baraff and Witkin (Large Steps in Cloth Simulation,
 // 1998) that stands on it.
 
-#include "draping/energy/energy.h"
+#include "draping/energy/constraint.h"
 #include "draping/fabric/fabric.h"
 #include "sewing/garment.h"
 
@@ -45,6 +45,7 @@ std::vector<HingeBend> make_hinge_bends(const Garment& garment, const std::vecto
 double value(const std::vector<HingeBend>& bends, const Points& x);
 void add_gradient(const std::vector<HingeBend>& bends, const Points& x, Eigen::VectorXd& g);
 void couplings(const std::vector<HingeBend>& bends, std::vector<std::pair<int, int>>& pairs);
+Constraint constraint(const HingeBend& bend, const Points& x); ///< theta - theta0
 /// Projected: without the second derivative of the angle.
 void add_hessian(const std::vector<HingeBend>& bends, const Points& x, HessianKind kind, BlockMatrix& h);
 

@@ -13,6 +13,8 @@ struct Loads {
     std::vector<StitchSpring> stitches;
     std::vector<HookSpring> hooks;
     std::vector<ElasticSegment> elastics;
+
+    bool operator==(const Loads&) const = default;
 };
 
 /// `node_mass` in kg.

@@ -15,6 +15,8 @@ struct StitchSpring {
     double r = 0;
     double stiffness = 0; ///< N/m
     double cap = 0;       ///< N
+
+    bool operator==(const StitchSpring&) const = default;
 };
 
 /// From a node to a place.
@@ -24,6 +26,8 @@ struct HookSpring {
     Vec3 axes = Vec3::Ones(); ///< 1 for axes that are held, 0 for free ones
     double stiffness = 0;     ///< N/m
     double cap = 0;           ///< N
+
+    bool operator==(const HookSpring&) const = default;
 };
 
 double value(const std::vector<StitchSpring>& springs, const Points& x);

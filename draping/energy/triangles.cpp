@@ -124,6 +124,29 @@ void TriangleCloth::add_gradient(const Points& x, Eigen::VectorXd& g) const {
     }
 }
 
+Constraint TriangleCloth::constraint(int k, const Points& x) const {
+    if (k >= int(3 * triangles_.size())) return toile::constraint(bends_[k - 3 * triangles_.size()], x);
+    const YarnTriangle& t = triangles_[k / 3];
+    const Between b(yarns_of(t, x));
+    const int which = k % 3;
+    Slope s = Slope::Zero();
+    Constraint c;
+    c.count = 3;
+    c.stiffness = which == 0 ? t.weft : which == 1 ? t.warp : t.shear;
+    if (which == 2) {
+        c.value = b.gamma();
+        s = b.cosine_slope() / b.sine;
+    } else {
+        c.value = b.length[which] - 1;
+        s.segment<3>(3 * which) = b.unit[which];
+    }
+    for (int i = 0; i < 3; ++i) {
+        c.nodes[i] = t.nodes[i];
+        c.gradient[i] = t.shape(i, 0) * s.head<3>() + t.shape(i, 1) * s.tail<3>();
+    }
+    return c;
+}
+
 void TriangleCloth::couplings(std::vector<std::pair<int, int>>& pairs) const {
     toile::couplings(bends_, pairs);
     for (const YarnTriangle& t : triangles_)

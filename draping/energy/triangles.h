@@ -4,6 +4,7 @@
 // Cloth by triangles as Baraff and Witkin have it (Large Steps in Cloth Simulation, 1998): stretch of warp and weft each
 // by itself, the angle between them, and hinges.
 
+#include "draping/energy/constraint.h"
 #include "draping/energy/hinge.h"
 
 namespace toile {
@@ -17,7 +18,7 @@ struct YarnTriangle {
     double weft = 0, warp = 0, shear = 0; ///< stiffness times area, J
 };
 
-class TriangleCloth final : public Energy {
+class TriangleCloth final : public ConstraintEnergy {
 public:
     /// `fabrics` has one entry per panel.
     TriangleCloth(const Garment& garment, const std::vector<Fabric>& fabrics);
@@ -26,6 +27,9 @@ public:
     void add_gradient(const Points& x, Eigen::VectorXd& g) const override;
     void couplings(std::vector<std::pair<int, int>>& pairs) const override;
     void add_hessian(const Points& x, HessianKind kind, BlockMatrix& h) const override;
+    /// S_weft, S_warp and gamma of every triangle, then the turn of every hinge.
+    int constraint_count() const override { return int(3 * triangles_.size() + bends_.size()); }
+    Constraint constraint(int k, const Points& x) const override;
 
 private:
     std::vector<YarnTriangle> triangles_;

@@ -3,9 +3,12 @@
 
 #include "draping/cloth.h"
 #include "draping/energy/spring_mesh.h"
+#include "draping/energy/triangles.h"
 #include "draping/solve/free_cloth.h"
 #include "draping/solve/implicit.h"
 #include "draping/solve/limited.h"
+#include "draping/solve/projective.h"
+#include "draping/solve/xpbd.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -15,8 +18,8 @@ namespace toile {
 namespace {
 
 std::unique_ptr<NodeProblem> free_cloth(std::unique_ptr<Energy> energy, std::vector<double> mass,
-                                        const std::vector<char>& pinned) {
-    auto problem = std::make_unique<FreeCloth>(std::move(energy), std::move(mass));
+                                        const std::vector<char>& pinned, bool projected = true) {
+    auto problem = std::make_unique<FreeCloth>(std::move(energy), std::move(mass), projected);
     for (std::size_t i = 0; i < pinned.size(); ++i)
         if (pinned[i]) problem->pin(int(i));
     return problem;
@@ -42,11 +45,33 @@ std::unique_ptr<Stepper> spring_stepper(Method method, const Garment& garment, c
     return stepper;
 }
 
+std::unique_ptr<Stepper> triangle_stepper(Method method, const Garment& garment, const std::vector<Fabric>& fabrics,
+                                          const std::vector<char>& pinned, Response& response, StepOptions step,
+                                          const MethodOptions& options) {
+    if (options.time_step > 0) step.time_step = options.time_step;
+    auto model = std::make_unique<TriangleCloth>(garment, fabrics);
+    const TriangleCloth& energy = *model;
+    auto problem = free_cloth(std::move(model), node_masses(garment, fabrics), pinned, options.projected);
+    if (method == Method::xpbd) return std::make_unique<XpbdStepper>(std::move(problem), energy, response, step);
+    return std::make_unique<ImplicitStepper>(std::move(problem), response, step);
+}
+
+std::unique_ptr<Stepper> projective_stepper(const Garment& garment, const std::vector<Fabric>& fabrics,
+                                            const std::vector<char>& pinned, Response& response, StepOptions step,
+                                            const MethodOptions& options) {
+    if (options.time_step > 0) step.time_step = options.time_step;
+    auto model = std::make_unique<ProjectiveCloth>(garment, fabrics);
+    const ProjectiveCloth& energy = *model;
+    auto problem = free_cloth(std::move(model), node_masses(garment, fabrics), pinned);
+    return std::make_unique<ProjectiveStepper>(std::move(problem), energy, response, step);
+}
+
 } // namespace
 
 const std::vector<Method>& all_methods() {
     static const std::vector<Method> all{Method::equilibrium, Method::springs_explicit, Method::springs_implicit,
-                                         Method::springs_biphasic, Method::springs_limited};
+                                         Method::springs_biphasic, Method::springs_limited, Method::triangles,
+                                         Method::projective, Method::xpbd};
     return all;
 }
 
@@ -57,6 +82,9 @@ const char* to_string(Method m) {
     case Method::springs_implicit: return "springs-implicit";
     case Method::springs_biphasic: return "springs-biphasic";
     case Method::springs_limited: return "springs-limited";
+    case Method::triangles: return "triangles";
+    case Method::projective: return "projective";
+    case Method::xpbd: return "xpbd";
     }
     return "equilibrium";
 }
@@ -79,6 +107,9 @@ std::unique_ptr<Stepper> make_stepper(Method method, const Garment& garment, con
     case Method::springs_biphasic:
     case Method::springs_limited:
         return spring_stepper(method, garment, fabrics, pinned, response, step, options);
+    case Method::triangles:
+    case Method::xpbd: return triangle_stepper(method, garment, fabrics, pinned, response, step, options);
+    case Method::projective: return projective_stepper(garment, fabrics, pinned, response, step, options);
     case Method::equilibrium: break;
     }
     throw std::invalid_argument(std::string("the method ") + to_string(method) + " has no steps in time");

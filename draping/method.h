@@ -19,7 +19,8 @@ class Stepper;
 class Response;
 struct StepOptions;
 
-enum class Method { equilibrium, springs_explicit, springs_implicit, springs_biphasic, springs_limited };
+enum class Method { equilibrium, springs_explicit, springs_implicit, springs_biphasic, springs_limited,
+                    triangles, projective, xpbd };
 
 const std::vector<Method>& all_methods();
 const char* to_string(Method method); ///< as above, with hyphens: "springs-explicit"
@@ -37,6 +38,7 @@ struct MethodOptions {
     double spring_damping = 2e-5; ///< s, damping of springs as a share of their stiffness
     double beyond = 20;           ///< springs-biphasic: stiffness beyond the fabric's limits, times that before
     LimitOptions limits;          ///< springs-limited
+    bool projected = true;        ///< triangles: a positive semidefinite stand-in for the Hessian
 };
 
 /// The cloth of a garment as one method that moves has it, with `pinned` (per node), without loads. Keeps a reference to the

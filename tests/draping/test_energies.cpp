@@ -4,6 +4,7 @@
 #include "draping/contact/friction.h"
 #include "draping/energy/bend.h"
 #include "draping/energy/elastic.h"
+#include "draping/energy/projective.h"
 #include "draping/energy/spring.h"
 #include "draping/energy/spring_grid.h"
 #include "draping/energy/spring_mesh.h"
@@ -70,6 +71,7 @@ void add_sheet(std::vector<EnergyCase>& cases) {
         TestedState angles = state; // at a triangle of 1e-7 m altitude, hinges turn within the step of the others
         if (state.name == "collapsed") angles.step = 5e-11;
         cases.push_back({model_energy("triangles", std::make_shared<TriangleCloth>(g, f)), angles});
+        cases.push_back({model_energy("projective", std::make_shared<ProjectiveCloth>(g, f)), state});
     }
 }
 

@@ -24,15 +24,15 @@ namespace {
 
 constexpr double g = 9.81;
 
-/// A sheet of 20 cm that lies in the air, held at one side or not at all.
-struct Sheet {
+/// A sheet of 20 cm that lies in the air, held at one side or by nothing.
+struct HeldSheet {
     Garment garment = garment_of(jittered_rectangle(0.2, 0.2, 0.02, 0.25, 7));
     std::vector<Fabric> fabrics{plain_fabric(500, 1e-5)};
     std::vector<char> pinned;
     Points start;
     std::unique_ptr<Response> response = make_response(ContactResponse::impulse, contact_cloth(garment), {}, {});
 
-    explicit Sheet(bool held) : pinned(garment.node_count, 0) {
+    explicit HeldSheet(bool held) : pinned(garment.node_count, 0) {
         for (int i = 0; i < garment.node_count; ++i) {
             const Vec2 p = garment.uv[i];
             start.push_back({p.x(), 0, p.y()});
@@ -74,7 +74,7 @@ double farthest(const Points& a, const Points& b) {
 TEST_CASE("triangles, projective and xpbd fall freely, and air takes its share", "[validation]") {
     for (const Method method : {Method::triangles, Method::projective, Method::xpbd}) {
         INFO(to_string(method));
-        Sheet sheet(false);
+        HeldSheet sheet(false);
         const StepOptions step{2e-3, 0, 1};
         const auto stepper = sheet.stepper(method, step);
         Moving cloth{sheet.start};
@@ -89,7 +89,7 @@ TEST_CASE("triangles, projective and xpbd fall freely, and air takes its share",
 TEST_CASE("triangles, projective and xpbd come to rest in the minimum of their energy", "[validation]") {
     for (const auto& [method, within] : {std::pair(Method::triangles, 1e-4), {Method::projective, 1e-4}, {Method::xpbd, 2e-3}}) {
         INFO(to_string(method));
-        Sheet sheet(true);
+        HeldSheet sheet(true);
         const auto stepper = sheet.stepper(method, {2e-3, 5, 0.1});
         Moving cloth{sheet.start};
         RestOptions o;

@@ -166,7 +166,7 @@ TEST_CASE("every method drapes, says what it is, and what it did not reach", "[m
         CHECK(report["method"] == name);
         CHECK(report["contact"]["response"] == (moves(method) ? "impulse" : "barrier"));
         CHECK(r.code == (report["status"] == "converged" ? 0 : 3));
-        CHECK(report["intersections"]["cloth_avatar"] == 0);
+        if (report["contact"]["guarantee"] == "no_crossing") CHECK(report["intersections"]["cloth_avatar"] == 0);
         bool told = false;
         for (const auto& sentence : report["decisions"])
             told = told || sentence.get<std::string>().find("method \"" + name) != std::string::npos;

@@ -25,6 +25,10 @@ std::array<int, 2> crossing_segments(const PanelBorder& border);
 /// `sweeps` of smoothing. The border's points come first and no segment is split.
 PlanarMesh mesh_panel(const PanelBorder& border, double edge, const SizeAt& size, int sweeps);
 
+/// The same with inner points on a lattice of spacing `edge` along warp and weft (`grain` as in Panel), where they stay
+/// however they meet the border: most inner edges are then along warp or weft, and the others diagonals.
+PlanarMesh mesh_panel_along_grain(const PanelBorder& border, double edge, double grain, int sweeps);
+
 /// Mean over the edges of a mesh of length / wanted length, leaving out what cannot meet it: edges at corners
 /// below 60 degrees and at border samples under half or over twice the target. 1 when nothing is left.
 double mean_edge_ratio(const PlanarMesh& mesh, double edge, const SizeAt& size);

@@ -336,7 +336,7 @@ double worst_around(PlanarMesh& mesh, int point) {
 }
 
 /// Flips the edge between a triangle with three border points and its neighbour's inner point, and moves that
-/// point to suit; undone unless all angles around it stay blunter than `cosine`.
+/// point to suit if it may; undone unless all angles around it stay blunter than `cosine`.
 void open_ears(PlanarMesh& mesh, double cosine) {
     std::vector<int> around;
     for (int t = 0; t < int(mesh.triangles.size()); ++t)
@@ -347,9 +347,11 @@ void open_ears(PlanarMesh& mesh, double cosine) {
             const Vec2 kept = mesh.points[e.b];
             flip(mesh, e);
             if (worst_around(mesh, e.b) < cosine) break;
-            blunt(mesh, e.b, around);
-            if (worst_around(mesh, e.b) < cosine) break;
-            mesh.points[e.b] = kept;
+            if (!mesh.still(e.b)) {
+                blunt(mesh, e.b, around);
+                if (worst_around(mesh, e.b) < cosine) break;
+                mesh.points[e.b] = kept;
+            }
             Quad back;
             if (quad_at(mesh, t, 1, back)) flip(mesh, back);
         }
@@ -405,7 +407,7 @@ void refine(PlanarMesh& mesh, const SizeAt& size, double limit) {
 void smooth(PlanarMesh& mesh, const SizeAt& size, int sweeps) {
     std::vector<int> around;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
-        for (int p = mesh.border_points; p < int(mesh.points.size()); ++p) {
+        for (int p = mesh.still_points; p < int(mesh.points.size()); ++p) {
             star(mesh, p, around);
             move_point(mesh, p, mean_circumcentre(mesh, around, size), around);
         }
@@ -421,7 +423,7 @@ void improve_angles(PlanarMesh& mesh) {
         for (int t = 0; t < int(mesh.triangles.size()); ++t) {
             if (sharpness(mesh, t) < bad) continue;
             for (int k = 0; k < 3; ++k)
-                if (!mesh.on_border(mesh.triangles[t][k])) blunt(mesh, mesh.triangles[t][k], around);
+                if (!mesh.still(mesh.triangles[t][k])) blunt(mesh, mesh.triangles[t][k], around);
         }
         open_ears(mesh, least);
     }

@@ -309,7 +309,10 @@ std::vector<PlanarMesh> mesh_panels(const Pattern& pattern, const LevelBorders& 
             if (options.size)
                 size = [&, p](const Vec2& at) { return std::clamp(options.size(p, at), 1e-3, 1.0); };
             try {
-                meshes[p] = mesh_panel(borders.panels[p], borders.edge_length, size, options.smoothing);
+                meshes[p] = options.grain_lattice ? mesh_panel_along_grain(borders.panels[p], borders.edge_length,
+                                                                           pattern.panels[p].grain, options.smoothing)
+                                                  : mesh_panel(borders.panels[p], borders.edge_length, size,
+                                                               options.smoothing);
             } catch (const std::exception& e) {
                 errors[p] = e.what();
             }
@@ -461,6 +464,8 @@ void refuse_senseless(const Pattern& pattern, const TriangulateOptions& options)
                                     " m is out of range, expected 0.0001 to 100 m");
     if (options.levels < 1 || options.levels > 8 || options.smoothing < 0)
         throw std::invalid_argument("triangulation takes 1 to 8 levels and 0 or more smoothing sweeps");
+    if (options.grain_lattice && options.size)
+        throw std::invalid_argument("a lattice along the grain has one edge length everywhere, but a size function was given");
     double area = 0;
     for (const Panel& panel : pattern.panels)
         area += std::abs(signed_area(panel.outline));

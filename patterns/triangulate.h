@@ -13,6 +13,9 @@ struct TriangulateOptions {
     std::function<double(int panel, const Vec2& at)> size;
     int levels = 1;     ///< nested levels, each twice as coarse as the next
     int smoothing = 10; ///< Lloyd iterations
+    /// Inner points lie on a lattice along warp and weft of their panel, whose edges have that length, and stay there:
+    /// edges along the yarns with a diagonal in every square, for methods that need them. Takes no `size`.
+    bool grain_lattice = false;
 };
 
 /// Two border segments sewn to each other, start to start and end to end.

@@ -67,7 +67,7 @@ void mark_inside(Cdt& cdt, const std::vector<std::pair<Cdt::Vertex_handle, Cdt::
 PlanarMesh extract(const Cdt& cdt, std::vector<Vec2> points, int border_points) {
     PlanarMesh mesh;
     mesh.points = std::move(points);
-    mesh.border_points = border_points;
+    mesh.border_points = mesh.still_points = border_points;
     mesh.triangle_at.assign(mesh.points.size(), -1);
     int count = 0;
     for (auto f = cdt.finite_faces_begin(); f != cdt.finite_faces_end(); ++f)

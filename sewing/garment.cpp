@@ -3,6 +3,7 @@
 
 #include "geometry/disjoint_sets.h"
 #include "patterns/curve.h"
+#include "patterns/plane.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,14 +15,6 @@ namespace toile {
 namespace {
 
 constexpr double eased = 0.02; // a seam whose sides differ by more is eased or gathered
-
-/// Panel coordinates to (weft, warp): the warp turns to y.
-Mat2 to_grain(double grain) {
-    if (grain == double(EIGEN_PI / 2)) return Mat2::Identity(); // exactly, not within rounding
-    Mat2 m;
-    m << std::sin(grain), -std::cos(grain), std::cos(grain), std::sin(grain);
-    return m;
-}
 
 double side_length(const Pattern& pattern, const SeamSide& side) {
     double sum = 0;

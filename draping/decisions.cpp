@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/decisions.h"
 
+#include "draping/energy/yarns.h"
 #include "geometry/bvh.h"
 #include "geometry/distance.h"
 #include "geometry/text.h"
@@ -53,12 +54,14 @@ std::string response_sentence(const DrapeFacts& f) {
                 to_string(f.contact.response), to_string(f.contact.guarantee), f.contact.unresolved);
 }
 
-std::string method_sentence(const DrapeFacts& f) {
-    const char* limits = f.method == Method::springs_limited    ? "springs beyond the fabric's limits were shortened in sweeps"
+std::string method_sentence(const DrapeFacts& f, const Garment& g) {
+    std::string limits = f.method == Method::springs_limited    ? "springs beyond the fabric's limits were shortened in sweeps"
                          : f.method == Method::springs_biphasic ? "springs become stiffer at the fabric's limits"
                                                                 : "nothing held strains within the fabric's limits";
+    if (f.method == Method::inextensible)
+        limits = text("%d of %d edges lie along warp or weft and kept their lengths", int(yarn_edges(g).size()), g.edges.size());
     return text("the levels were brought to rest by the method \"%s\" instead of equilibrium, which sewed and placed the cloth; %s",
-                to_string(f.method), limits);
+                to_string(f.method), limits.c_str());
 }
 
 std::string level_sentence(const DrapeFacts& f) {
@@ -157,7 +160,7 @@ std::vector<std::string> decisions(const DrapeFacts& f, const Garment& g, const 
                                    const PanelFabrics& fabrics, const TriMesh& body) {
     std::vector<std::string> out{level_sentence(f), contact_sentence(f), friction_sentence(f, g.node_count),
                                  growth_sentence(f)};
-    if (moves(f.method)) out.push_back(method_sentence(f));
+    if (moves(f.method)) out.push_back(method_sentence(f, g));
     if (f.contact.response != ContactResponse::barrier) out.push_back(response_sentence(f));
     if (f.untangled > 0)
         out.push_back(text("where cloth crossed itself after sewing or on a finer mesh, it was taken apart before contact "

@@ -4,8 +4,10 @@
 #include "draping/cloth.h"
 #include "draping/energy/spring_mesh.h"
 #include "draping/energy/triangles.h"
+#include "draping/energy/yarns.h"
 #include "draping/solve/free_cloth.h"
 #include "draping/solve/implicit.h"
+#include "draping/solve/inextensible.h"
 #include "draping/solve/limited.h"
 #include "draping/solve/projective.h"
 #include "draping/solve/xpbd.h"
@@ -16,6 +18,8 @@
 namespace toile {
 
 namespace {
+
+constexpr double inextensible_step = 5e-4; // s: lines that the body stretches pull with a hundred times what hangs from them
 
 std::unique_ptr<NodeProblem> free_cloth(std::unique_ptr<Energy> energy, std::vector<double> mass,
                                         const std::vector<char>& pinned, bool projected = true) {
@@ -66,12 +70,22 @@ std::unique_ptr<Stepper> projective_stepper(const Garment& garment, const std::v
     return std::make_unique<ProjectiveStepper>(std::move(problem), energy, response, step);
 }
 
+std::unique_ptr<Stepper> inextensible_stepper(const Garment& garment, const std::vector<Fabric>& fabrics,
+                                              const std::vector<char>& pinned, Response& response, StepOptions step,
+                                              const MethodOptions& options) {
+    step.time_step = options.time_step > 0 ? options.time_step : inextensible_step;
+    auto cloth = std::make_unique<YarnCloth>(garment, fabrics, yarn_edges(garment));
+    Tension& tension = cloth->tension;
+    auto problem = free_cloth(std::move(cloth), node_masses(garment, fabrics), pinned);
+    return std::make_unique<InextensibleStepper>(std::move(problem), tension, response, step);
+}
+
 } // namespace
 
 const std::vector<Method>& all_methods() {
     static const std::vector<Method> all{Method::equilibrium, Method::springs_explicit, Method::springs_implicit,
                                          Method::springs_biphasic, Method::springs_limited, Method::triangles,
-                                         Method::projective, Method::xpbd};
+                                         Method::projective, Method::xpbd, Method::inextensible};
     return all;
 }
 
@@ -85,6 +99,7 @@ const char* to_string(Method m) {
     case Method::triangles: return "triangles";
     case Method::projective: return "projective";
     case Method::xpbd: return "xpbd";
+    case Method::inextensible: return "inextensible";
     }
     return "equilibrium";
 }
@@ -110,6 +125,7 @@ std::unique_ptr<Stepper> make_stepper(Method method, const Garment& garment, con
     case Method::triangles:
     case Method::xpbd: return triangle_stepper(method, garment, fabrics, pinned, response, step, options);
     case Method::projective: return projective_stepper(garment, fabrics, pinned, response, step, options);
+    case Method::inextensible: return inextensible_stepper(garment, fabrics, pinned, response, step, options);
     case Method::equilibrium: break;
     }
     throw std::invalid_argument(std::string("the method ") + to_string(method) + " has no steps in time");

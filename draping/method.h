@@ -20,7 +20,7 @@ class Response;
 struct StepOptions;
 
 enum class Method { equilibrium, springs_explicit, springs_implicit, springs_biphasic, springs_limited,
-                    triangles, projective, xpbd };
+                    triangles, projective, xpbd, inextensible };
 
 const std::vector<Method>& all_methods();
 const char* to_string(Method method); ///< as above, with hyphens: "springs-explicit"
@@ -29,12 +29,15 @@ Method method_called(const std::string& name);
 
 /// Whether it finds rest by motion in time, which needs a response to contact. Equilibrium may have one, the others must.
 inline bool moves(Method method) { return method != Method::equilibrium; }
+/// Whether it needs panels whose edges lie along warp and weft (TriangulateOptions::grain_lattice).
+inline bool needs_grain_lattice(Method method) { return method == Method::inextensible; }
 inline ContactResponse usual_response(Method method) {
     return moves(method) ? ContactResponse::impulse : ContactResponse::barrier;
 }
 
 struct MethodOptions {
-    double time_step = 0;         ///< s, of explicit methods that of substeps; 0: 2 ms, of explicit ones what is stable
+    double time_step = 0;         ///< s, of explicit methods that of substeps; 0: 2 ms, of inextensible 0.5, of explicit ones what is
+                                  ///< stable
     double spring_damping = 2e-5; ///< s, damping of springs as a share of their stiffness
     double beyond = 20;           ///< springs-biphasic: stiffness beyond the fabric's limits, times that before
     LimitOptions limits;          ///< springs-limited

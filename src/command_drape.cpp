@@ -166,7 +166,7 @@ void add_method(CLI::App& command, DrapeArguments& a) {
         ->check(CLI::IsMember(names).description(""))
         ->type_name(joined_by_bars(names));
     add_duration(command, "time-step", drape.method_options.time_step, 1e-7, 0.1,
-                 "Step of a motion, of explicit methods that of their substeps (default 2 ms; what is stable)");
+                 "Step of a motion, of explicit methods that of their substeps (default 2 ms; inextensible 0.5 ms; what is stable)");
     command
         .add_option_function<std::string>(
             "--limit",

@@ -105,11 +105,13 @@ Pattern sound_pattern(const std::string& path, std::vector<std::string>& warning
     throw InputError(path + ": " + errors[0] + more);
 }
 
-DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length, double max_memory) {
+DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length, double max_memory,
+                    bool grain_lattice) {
     refuse_too_fine(pattern, edge_length, max_memory);
     TriangulateOptions options;
     options.edge_length = edge_length;
     options.levels = levels_for(edge_length);
+    options.grain_lattice = grain_lattice;
     DrapeInput input;
     input.fabric = common_fabric(pattern, fabric);
     input.fabrics = fabrics_of(pattern, input.fabric);

@@ -26,9 +26,10 @@ bool is_staged(const std::string& path);
 /// A pattern that check() finds no error in. Its warnings are added. Throws InputError with the first error.
 Pattern sound_pattern(const std::string& path, std::vector<std::string>& warnings);
 
-/// The pattern meshed at `edge_length` metres. Throws InputError when that is too fine, or the meshes alone would
+/// The pattern meshed at `edge_length` metres, along the grain if so asked. Throws InputError when that is too fine, or the meshes alone would
 /// take the process beyond `max_memory` bytes.
-DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length, double max_memory = 1e18);
+DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length, double max_memory = 1e18,
+                    bool grain_lattice = false);
 
 /// A staged mesh and its companion, which may say fabrics, layers, pins and elastics; the edges of its panels are
 /// the loops of their border. Throws InputError.

@@ -248,7 +248,8 @@ DrapeOutcome run_job(const DrapeJob& job) {
 
     const DrapeInput input = is_staged(job.pattern)
                                  ? read_staged_input(job.pattern, job.fabric, body)
-                                 : input_of(pattern, job.fabric, job.edge_length, job.drape.max_memory);
+                                 : input_of(pattern, job.fabric, job.edge_length, job.drape.max_memory,
+                                            needs_grain_lattice(job.drape.method));
     context.decisions.insert(context.decisions.end(), input.notes.begin(), input.notes.end());
     refuse_unknown_labels(job, input.staging);
     watch.lap(context, is_staged(job.pattern) ? "read" : "triangulate");

@@ -236,9 +236,11 @@ ResponseDone ImplicitStepper::step(Moving& cloth, const Points& body_end) {
         done = respond(cloth, response_, seen, v);
         one.take_up(done, v);
         v = one.candidate();
+        constrain(cloth, v);
         slow(v, dt, options_.max_motion);
     } else {
         v = one.candidate();
+        constrain(cloth, v);
         for (std::size_t i = 0; i < n; ++i) // what the response is to do anew
             v[i] -= dt * inverse[i] * cloth.other_force[i];
         slow(v, dt, options_.max_motion);

@@ -11,12 +11,16 @@
 
 namespace toile {
 
-class ImplicitStepper final : public ProblemStepper {
+class ImplicitStepper : public ProblemStepper {
 public:
     using ProblemStepper::ProblemStepper;
 
     ResponseDone step(Moving& cloth, const Points& body_end) override;
     int factorisations() const override { return factorisations_; }
+
+protected:
+    /// Before contact is looked for: the place for constraints. `v` is what moves the cloth, m/s.
+    virtual void constrain(const Moving& cloth, Points& v) { (void)cloth, (void)v; }
 
 private:
     Cholesky factor_;

@@ -10,6 +10,7 @@
 #include "draping/energy/spring_mesh.h"
 #include "draping/energy/stretch.h"
 #include "draping/energy/triangles.h"
+#include "draping/energy/yarns.h"
 
 #include "tests/support/energy_checks.h"
 #include "tests/support/shapes.h"
@@ -309,6 +310,18 @@ void add_problem(std::vector<EnergyCase>& cases) {
     cases.push_back({energy, {"on a body", x, 2e-8}, false});
 }
 
+void add_yarns(std::vector<EnergyCase>& cases) {
+    const FlatMesh squares = halved_squares(6, 4, 0.05), irregular = mesh();
+    for (const FlatMesh* m : {&squares, &irregular}) {
+        const Garment g = garment_of(*m);
+        const auto cloth = std::make_shared<YarnCloth>(g, std::vector<Fabric>{woven()}, yarn_edges(g));
+        Random random(8);
+        for (double& newtons : cloth->tension.newtons) newtons = random.in(-1, 3);
+        for (double& stiffness : cloth->tension.stiffness) stiffness = random.in(0, 500);
+        for (const TestedState& state : tested_states(*m)) cases.push_back({model_energy("yarns", cloth), state});
+    }
+}
+
 std::vector<EnergyCase> every_energy() {
     std::vector<EnergyCase> cases;
     add_sheet(cases);
@@ -319,6 +332,7 @@ std::vector<EnergyCase> every_energy() {
     add_elastic(cases);
     add_models(cases);
     add_problem(cases);
+    add_yarns(cases);
     return cases;
 }
 

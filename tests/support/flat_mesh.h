@@ -102,6 +102,22 @@ inline FlatMesh jittered_rectangle(double length, double width, double edge, dou
     return mesh;
 }
 
+/// Squares along the axes, each halved by a diagonal, all the same way or every second one the other way: node i + (columns + 1) j at (i, j) times the edge.
+inline FlatMesh halved_squares(int columns, int rows, double edge, bool alternating = true) {
+    FlatMesh mesh;
+    for (int j = 0; j <= rows; ++j)
+        for (int i = 0; i <= columns; ++i) mesh.points.push_back({i * edge, j * edge});
+    for (int j = 0; j < rows; ++j)
+        for (int i = 0; i < columns; ++i) {
+            const int a = i + (columns + 1) * j, b = a + 1, c = a + columns + 1, d = c + 1;
+            if (!alternating || (i + j) % 2 == 0)
+                mesh.triangles.insert(mesh.triangles.end(), {{a, b, d}, {a, d, c}});
+            else
+                mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {b, d, c}});
+        }
+    return mesh;
+}
+
 /// One panel, one node per vertex, grain along the axes turned by `grain` radians (0: warp along y).
 inline Garment garment_of(const FlatMesh& mesh, double grain = 0) {
     Garment garment;

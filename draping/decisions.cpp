@@ -59,7 +59,8 @@ std::string method_sentence(const DrapeFacts& f, const Garment& g) {
                          : f.method == Method::springs_biphasic ? "springs become stiffer at the fabric's limits"
                                                                 : "nothing held strains within the fabric's limits";
     if (f.method == Method::inextensible)
-        limits = text("%d of %d edges lie along warp or weft and kept their lengths", int(yarn_edges(g).size()), g.edges.size());
+        limits = text("%d of %d edges lie along warp or weft and were brought back to their lengths in every step, before contact",
+                      int(yarn_edges(g).size()), g.edges.size());
     return text("the levels were brought to rest by the method \"%s\" instead of equilibrium, which sewed and placed the cloth; %s",
                 to_string(f.method), limits.c_str());
 }

@@ -84,8 +84,11 @@ std::string input_hash(const DrapeJob& job) {
     for (const std::string& word : job.drape.hold)
         hash.add("hold " + word + '\n');
     hash.add(std::string("contact ") + to_string(response_of(job.drape)) + '\n');
+    const MethodOptions& how = job.drape.method_options;
+    hash.add(std::string("method ") + to_string(job.drape.method) + ' ' + to_string(how.limits.order) +
+             (how.limits.shear ? " shear" : "") + (how.projected ? "" : " exact") + '\n');
     for (const double value :
-         {job.form.height, job.form.bust, job.form.waist, job.form.hip, job.edge_length, job.drape.tolerance,
+         {double(how.limits.sweeps), how.time_step, how.spring_damping, how.beyond, job.form.height, job.form.bust, job.form.waist, job.form.hip, job.edge_length, job.drape.tolerance,
           job.drape.clearance, job.drape.friction, job.drape.cloth_friction, job.drape.gravity})
         hash.add(std::to_string(value) + ' ');
     return hash.text();

@@ -3,6 +3,7 @@
 // bench_bending [test ...] with tests out of: plate cylinder twist cantilever lateral cost sheet. Default:
 // all.
 
+#include "bench/asked.h"
 #include "bench/bending/candidates.h"
 #include "tests/support/hanging_sheet.h"
 #include "tests/support/plates.h"
@@ -11,7 +12,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <cstring>
 
 using namespace toile;
 using namespace toile::bench;
@@ -245,14 +245,9 @@ void hanging_sheet() {
 } // namespace
 
 int main(int count, char** words) {
-    const auto asked = [&](const char* test) {
-        for (int i = 1; i < count; ++i)
-            if (std::strcmp(words[i], test) == 0) return true;
-        return count == 1;
-    };
     for (const Candidate& candidate : candidates()) {
         const auto run = [&](const char* test, const std::function<void()>& body) {
-            if (!asked(test)) return;
+            if (!asked(count, words, test)) return;
             std::printf("%s, %s\n", candidate.name.c_str(), test);
             body();
             std::fflush(stdout);
@@ -264,7 +259,7 @@ int main(int count, char** words) {
         run("cantilever", [&] { cantilever(candidate, 1); });
         run("cost", [&] { cost(candidate); });
     }
-    if (asked("sheet")) {
+    if (asked(count, words, "sheet")) {
         std::printf("a sheet by two corners\n");
         hanging_sheet();
     }

@@ -2,13 +2,13 @@
 // What cloth on edge midpoints costs and how well it bends, behind docs/nonconforming.md.
 // bench_nonconforming [test ...] with tests out of: cantilever rest step. Default: all.
 
+#include "bench/asked.h"
 #include "draping/nonconforming/motion.h"
 
 #include "tests/support/hanging_sheet.h"
 #include "tests/support/midpoint_strip.h"
 
 #include <cstdio>
-#include <cstring>
 #include <ctime>
 
 using namespace toile;
@@ -43,7 +43,7 @@ MidpointBending jump_bending(const Garment& garment, Jumps jumps) {
         const double length = (garment.uv[b] - garment.uv[a]).norm();
         double areas = 0;
         for (int i = 0; i < count; ++i)
-            areas += 0.5 * std::abs(garment.rest.edges[garment.edges.incident[first + i]].determinant());
+            areas += rest_area(garment.rest.edges[garment.edges.incident[first + i]]);
         // A jump to the mirror image is twice that to the clamp, of two areas, and one of its halves is ours.
         const double factor = length * std::sqrt((jumps == Jumps::across ? 3.0 : 1.0) / areas);
         for (int component = 0; component < (jumps == Jumps::across ? 1 : 2); ++component) {
@@ -194,12 +194,7 @@ void step() {
 } // namespace
 
 int main(int count, char** words) {
-    const auto asked = [&](const char* test) {
-        for (int i = 1; i < count; ++i)
-            if (std::strcmp(words[i], test) == 0) return true;
-        return count == 1;
-    };
-    if (asked("cantilever")) cantilever();
-    if (asked("rest")) rest();
-    if (asked("step")) step();
+    if (asked(count, words, "cantilever")) cantilever();
+    if (asked(count, words, "rest")) rest();
+    if (asked(count, words, "step")) step();
 }

@@ -17,8 +17,6 @@ constexpr double friction_rest = 10; // residual below which friction only gives
 constexpr double friction_off = 1e4; // until the residual is above this again: forces of impacts are no friction
 constexpr int renew_every = 8;        // arrivals after which what is lagged is renewed in any case
 
-double rest_area(const Mat2& edges) { return 0.5 * std::abs(edges.determinant()); }
-
 } // namespace
 
 ContactCloth contact_cloth(const Garment& g) {

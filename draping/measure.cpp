@@ -213,7 +213,7 @@ StrainMeasure measure_strain(const Garment& garment, const Points& x, const Pane
     double off_seams = 0, compressed = 0, narrowed = 0;
     for (int t = 0; t < int(garment.triangles.size()); ++t) {
         const Mat2& rest = garment.rest.edges[t];
-        const double area = 0.5 * std::abs(rest.determinant());
+        const double area = rest_area(rest);
         if (!(area > 0)) continue;
         const auto [a, b, c] = garment.nodes(t);
         const TriangleStrain s = strain_of(rest, x[a], x[b], x[c]);

@@ -121,6 +121,8 @@ void refuse_collapse(const Garment& g) {
 
 } // namespace
 
+double rest_area(const Mat2& edges) { return 0.5 * std::abs(edges.determinant()); }
+
 std::vector<int> vertices_along(const Garment& garment, const EdgeSpan& span) {
     const double low = std::min(span.t0, span.t1) - 1e-9, high = std::max(span.t0, span.t1) + 1e-9;
     std::vector<int> out;

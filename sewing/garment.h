@@ -15,6 +15,13 @@ struct RestShape {
     std::vector<double> angles; ///< rad, one per entry of Garment::edges; 0 is flat
 };
 
+/// Area of a triangle with these rest edges, m2.
+double rest_area(const Mat2& edges);
+/// Its edge opposite corner k, up to its sense: (weft, warp).
+inline Vec2 rest_edge(const Mat2& edges, int k) {
+    return k == 0 ? Vec2(edges.col(1) - edges.col(0)) : Vec2(edges.col(k == 1 ? 1 : 0));
+}
+
 /// A zero-rest-length spring from node a to the point (1 - r) b[0] + r b[1].
 struct Stitch {
     int a = 0;

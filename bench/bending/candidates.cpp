@@ -52,12 +52,8 @@ Term squares_term(const std::vector<Square>& squares) {
             }};
 }
 
-double area_of(const Garment& garment, int t) {
-    return 0.5 * std::abs(garment.rest.edges[t].determinant());
-}
-
 double hinge_area(const Garment& garment, const Hinge& hinge) {
-    return area_of(garment, hinge.triangles[0]) + area_of(garment, hinge.triangles[1]);
+    return rest_area(garment.rest.edges[hinge.triangles[0]]) + rest_area(garment.rest.edges[hinge.triangles[1]]);
 }
 
 HingeAngle angle_of(const std::array<int, 4>& nodes, const VectorXd& q) {
@@ -144,7 +140,7 @@ Term mid_edge_term(const Garment& garment, double d) {
             const Vec2 a = garment.uv[garment.triangles[t][(k + 1) % 3]],
                        b = garment.uv[garment.triangles[t][(k + 2) % 3]];
             const Vec2 n = Vec2((b - a).y(), -(b - a).x()).normalized();
-            const double scale = (b - a).norm() / area_of(garment, t) * std::sqrt(d * area_of(garment, t));
+            const double scale = (b - a).norm() / rest_area(garment.rest.edges[t]) * std::sqrt(d * rest_area(garment.rest.edges[t]));
             const int e = garment.edges.of_triangle[t][k];
             const bool first = garment.edges.incident[garment.edges.first[e]] == t;
             sides[k] = {e, first ? 1.0 : -1.0,
@@ -186,7 +182,7 @@ Term fit_term(const Garment& garment, double d) {
         for (int i = 0; i < 3; ++i)
             squares.push_back({{p.nodes.begin(), p.nodes.begin() + p.count},
                                rows.row(i),
-                               (i == 2 ? 2 : 1) * d * area_of(garment, t)});
+                               (i == 2 ? 2 : 1) * d * rest_area(garment.rest.edges[t])});
     }
     return squares_term(squares);
 }
@@ -196,7 +192,7 @@ std::vector<double> thirds(const Garment& garment, const std::function<int(int t
     std::vector<double> areas(count, 0);
     for (int t = 0; t < int(garment.triangles.size()); ++t)
         for (int k = 0; k < 3; ++k)
-            areas[carrier(t, k)] += area_of(garment, t) / 3;
+            areas[carrier(t, k)] += rest_area(garment.rest.edges[t]) / 3;
     return areas;
 }
 

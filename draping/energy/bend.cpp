@@ -191,10 +191,6 @@ Eigen::Matrix<double, 3, 6> morley(const Mat2& edges) {
     return b;
 }
 
-double rest_area(const Mat2& edges) {
-    return 0.5 * std::abs(edges.determinant());
-}
-
 // The three second derivatives of triangle t as rows over `nodes`, which receives the nodes used.
 Rows exact_rows(const Garment& garment, int t, const std::vector<EdgeSlope>& slopes, const Patch& patch,
                 std::vector<int>& nodes) {
@@ -303,6 +299,12 @@ Mat3 bend_moduli(const Fabric& fabric) {
     return d;
 }
 
+double bend_modulus(const Fabric& f, double angle) {
+    const double c = std::pow(std::cos(angle), 2), s = std::pow(std::sin(angle), 2);
+    const double coupling = f.bend_poisson * std::sqrt(f.bend_warp * f.bend_weft);
+    return f.bend_warp * c * c + f.bend_weft * s * s + (2 * coupling + 4 * f.bend_twist) * c * s;
+}
+
 Bending make_bending(const Garment& garment, const std::vector<Fabric>& fabrics) {
     std::vector<Mat3> moduli;
     for (const Fabric& fabric : fabrics)
@@ -330,6 +332,29 @@ void bend_gradient(const Bending& bending, const Points& x, Points& gradient) {
         for (int i = begin; i < end; ++i)
             gradient[i] += force_at(bending.stiffness, x, i);
     });
+}
+
+void add_gradient(const Bending& bending, const Points& x, Eigen::VectorXd& g) {
+    Points bent(x.size(), Vec3::Zero());
+    bend_gradient(bending, x, bent);
+    g += flat(bent);
+}
+
+void couplings(const Bending& bending, std::vector<std::pair<int, int>>& pairs) {
+    for (int j = 0; j < bending.stiffness.outerSize(); ++j)
+        for (Eigen::SparseMatrix<double>::InnerIterator entry(bending.stiffness, j); entry; ++entry)
+            if (entry.row() > j) pairs.emplace_back(int(entry.row()), j);
+}
+
+void add_hessian(const Bending& bending, BlockMatrix& h) {
+    for (int j = 0; j < bending.stiffness.outerSize(); ++j)
+        for (Eigen::SparseMatrix<double>::InnerIterator entry(bending.stiffness, j); entry; ++entry) {
+            const Mat3 block = entry.value() * Mat3::Identity();
+            if (entry.row() == j)
+                h.add_diagonal(j, block);
+            else if (entry.row() > j)
+                h.add_off_diagonal(j, h.find(int(entry.row()), j), block);
+        }
 }
 
 } // namespace toile

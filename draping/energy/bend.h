@@ -3,6 +3,7 @@
 
 // Bending: a Morley plate whose edge slopes are read off the nodes around the edge.
 
+#include "draping/algebra/block_matrix.h"
 #include "draping/energy/patch.h"
 #include "draping/fabric/fabric.h"
 
@@ -41,6 +42,9 @@ struct Bending {
 /// whose bending is not positive definite.
 Mat3 bend_moduli(const Fabric& fabric);
 
+/// Stiffness against curving along a line at `angle` (rad) from the warp, N m.
+double bend_modulus(const Fabric& fabric, double angle);
+
 /// `fabrics` has one entry per panel. Throws as bend_moduli() does.
 Bending make_bending(const Garment& garment, const std::vector<Fabric>& fabrics);
 
@@ -48,5 +52,10 @@ double bend_value(const Bending& bending, const Points& x);
 
 /// Adds the gradient to `gradient`.
 void bend_gradient(const Bending& bending, const Points& x, Points& gradient);
+
+/// The same as one of the terms of an Energy, all of `stiffness`.
+void add_gradient(const Bending& bending, const Points& x, Eigen::VectorXd& g);
+void couplings(const Bending& bending, std::vector<std::pair<int, int>>& pairs);
+void add_hessian(const Bending& bending, BlockMatrix& h);
 
 } // namespace toile

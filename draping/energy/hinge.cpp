@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/energy/hinge.h"
 
+#include "draping/energy/bend.h"
+
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 
 #include <cmath>
 #include <numbers>
@@ -26,19 +27,6 @@ Rows from_first(int k) {
     d.leftCols<3>() = -Mat3::Identity();
     d.middleCols<3>(3 * k) = Mat3::Identity();
     return d;
-}
-
-/// Stiffness of a cylinder whose curvature lies along the unit grain direction d (weft, warp), N m.
-double stiffness_along(const Fabric& f, const Vec2& d) {
-    const double u = d.x() * d.x(), v = d.y() * d.y();
-    const double coupling = f.bend_poisson * std::sqrt(f.bend_warp * f.bend_weft);
-    return f.bend_weft * u * u + f.bend_warp * v * v + (2 * coupling + 4 * f.bend_twist) * u * v;
-}
-
-/// The edge of a triangle opposite corner k, flat.
-Vec2 rest_edge(const Mat2& rest, int k) {
-    if (k == 0) return rest.col(1) - rest.col(0);
-    return rest.col(k == 1 ? 1 : 0);
 }
 
 std::array<Vec3, 4> places(const HingeBend& b, const Points& x) {
@@ -126,9 +114,9 @@ std::vector<HingeBend> make_hinge_bends(const Garment& garment, const std::vecto
             const auto& of = garment.edges.of_triangle[t];
             const int k = int(std::find(of.begin(), of.end(), hinge.edge) - of.begin());
             const Vec2 edge = rest_edge(garment.rest.edges[t], k), across(-edge.y(), edge.x());
-            d += stiffness_along(fabrics[garment.panel_of_triangle[t]], across.normalized()) / 2;
+            d += bend_modulus(fabrics[garment.panel_of_triangle[t]], std::atan2(across.x(), across.y())) / 2;
             length += edge.norm() / 2;
-            area += 0.5 * std::abs(garment.rest.edges[t].determinant());
+            area += rest_area(garment.rest.edges[t]);
         }
         const double altitude = area / length; // the mean of both
         bends.push_back({hinge.nodes, garment.rest.angles[hinge.edge], d * area / (altitude * altitude)});

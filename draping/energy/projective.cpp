@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/energy/projective.h"
 
-#include <Eigen/LU>
+#include "draping/energy/grain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,10 +23,8 @@ ProjectiveCloth::ProjectiveCloth(const Garment& garment, const std::vector<Fabri
     for (std::size_t t = 0; t < garment.triangles.size(); ++t) {
         const Mat2& rest = garment.rest.edges[t];
         const Fabric& f = fabrics[garment.panel_of_triangle[t]];
-        const double area = 0.5 * std::abs(rest.determinant());
-        Eigen::Matrix<double, 3, 2> shape;
-        shape.bottomRows<2>() = rest.inverse();
-        shape.row(0) = -shape.bottomRows<2>().colwise().sum();
+        const double area = rest_area(rest);
+        const GrainShape shape = grain_shape(rest);
         const double weft = std::max(f.stretch_weft - f.shear, least_share * f.stretch_weft);
         const double warp = std::max(f.stretch_warp - f.shear, least_share * f.stretch_warp);
         const double half = std::sqrt(0.5);
@@ -43,9 +41,7 @@ double ProjectiveCloth::value(const Points& x) const {
 }
 
 void ProjectiveCloth::add_gradient(const Points& x, Eigen::VectorXd& g) const {
-    Points bend(x.size(), Vec3::Zero());
-    bend_gradient(bending_, x, bend);
-    g += flat(bend);
+    toile::add_gradient(bending_, x, g);
     for (const DirectionSpring& s : springs_) {
         const Vec3 w = image(s, x);
         const double length = w.norm();
@@ -58,18 +54,12 @@ void ProjectiveCloth::add_gradient(const Points& x, Eigen::VectorXd& g) const {
 void ProjectiveCloth::couplings(std::vector<std::pair<int, int>>& pairs) const {
     for (const DirectionSpring& s : springs_)
         for (int k = 0; k < 3; ++k) pairs.emplace_back(s.nodes[k], s.nodes[(k + 1) % 3]);
-    for (int j = 0; j < bending_.stiffness.outerSize(); ++j)
-        for (Eigen::SparseMatrix<double>::InnerIterator e(bending_.stiffness, j); e; ++e)
-            if (e.row() > j) pairs.emplace_back(int(e.row()), j);
+    toile::couplings(bending_, pairs);
 }
 
 template <class Block>
 void ProjectiveCloth::add_elements(BlockMatrix& h, const Block& block) const {
-    for (int j = 0; j < bending_.stiffness.outerSize(); ++j)
-        for (Eigen::SparseMatrix<double>::InnerIterator e(bending_.stiffness, j); e; ++e) {
-            if (e.row() == j) h.add_diagonal(j, e.value() * Mat3::Identity());
-            if (e.row() > j) h.add_off_diagonal(j, h.find(int(e.row()), j), e.value() * Mat3::Identity());
-        }
+    toile::add_hessian(bending_, h);
     for (const DirectionSpring& s : springs_) {
         const Mat3 along = block(s);
         Eigen::Matrix<double, 9, 9> all;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/energy/spring_mesh.h"
 
+#include "draping/energy/bend.h"
+
 #include <cmath>
 #include <numbers>
 
@@ -30,7 +32,7 @@ FlatEdge flat_edge(const Garment& g, const std::vector<Fabric>& fabrics, int e, 
     FlatEdge f;
     f.length = d.norm();
     f.angle = std::atan2(d.x(), d.y());
-    f.area = 0.5 * std::abs(r.determinant());
+    f.area = rest_area(r);
     f.corner = nodes[k];
     f.foot = (at[k] - at[a]).dot(d) / d.squaredNorm();
     f.fabric = &fabrics[g.panel_of_triangle[t]];
@@ -82,12 +84,6 @@ void add_hinge(std::vector<Spring>& springs, SpringBetween& between, const std::
 double strip_modulus(const Fabric& f, double angle) {
     const double c = std::pow(std::cos(angle), 2), s = std::pow(std::sin(angle), 2);
     return 1 / (c * c / f.stretch_warp + s * s / f.stretch_weft + (1 / f.shear - 2 * f.poisson / f.stretch_warp) * c * s);
-}
-
-double bend_modulus(const Fabric& f, double angle) {
-    const double c = std::pow(std::cos(angle), 2), s = std::pow(std::sin(angle), 2);
-    const double coupling = f.bend_poisson * std::sqrt(f.bend_warp * f.bend_weft);
-    return f.bend_warp * c * c + f.bend_weft * s * s + (2 * coupling + 4 * f.bend_twist) * c * s;
 }
 
 double strip_limit(const Fabric& f, double angle) {

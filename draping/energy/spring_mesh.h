@@ -18,9 +18,6 @@ struct SpringMeshOptions {
 /// Modulus of a narrow strip cut at `angle` (rad) from the warp, N/m.
 double strip_modulus(const Fabric& fabric, double angle);
 
-/// Stiffness against curving along a line at `angle` (rad) from the warp, N m.
-double bend_modulus(const Fabric& fabric, double angle);
-
 /// Largest elongation along a line at `angle` (rad) from the warp that the limits of the fabric allow when they are small:
 /// that of warp, weft and shear at once. 0: any.
 double strip_limit(const Fabric& fabric, double angle);

@@ -19,15 +19,13 @@ constexpr int chunk = 256;
 
 // Yarns in the metric c = (|F_weft|^2, |F_warp|^2, F_weft . F_warp).
 struct Metric {
-    Eigen::Matrix<double, 3, 2> yarns;
+    GrainImages yarns;
     Vec3 c;
 };
 
 Metric metric_of(const StrainLimit& limit, const Points& x) {
-    Eigen::Matrix<double, 3, 2> edges;
-    edges << x[limit.nodes[1]] - x[limit.nodes[0]], x[limit.nodes[2]] - x[limit.nodes[0]];
     Metric m;
-    m.yarns = edges * limit.shape.bottomRows<2>();
+    m.yarns = grain_images(limit.nodes, limit.shape, x);
     m.c << m.yarns.col(0).squaredNorm(), m.yarns.col(1).squaredNorm(), m.yarns.col(0).dot(m.yarns.col(1));
     return m;
 }
@@ -139,14 +137,13 @@ std::vector<StrainLimit> make_strain_limits(const Garment& garment, const std::v
         const Mat2& edges = garment.rest.edges[t];
         StrainLimit limit;
         limit.nodes = garment.nodes(t);
-        limit.shape.bottomRows<2>() = edges.inverse();
-        limit.shape.row(0) = -limit.shape.row(1) - limit.shape.row(2);
+        limit.shape = grain_shape(edges);
         limit.weft = squared_limit(fabric.limit_weft);
         limit.warp = squared_limit(fabric.limit_warp);
         limit.shear = fabric.limit_shear > 0 ? std::pow(std::sin(fabric.limit_shear), 2) : never;
         // As much energy as the membrane holds at the limit: the barrier is about as stiff as the cloth where
         // it begins, and many times as stiff near the limit.
-        const double area = 0.5 * std::abs(edges.determinant());
+        const double area = rest_area(edges);
         limit.weft_stiffness = area * fabric.stretch_weft * strain_scale(limit.weft);
         limit.warp_stiffness = area * fabric.stretch_warp * strain_scale(limit.warp);
         limit.shear_stiffness = limit.shear == never ? 0 : area * fabric.shear * limit.shear;

@@ -3,6 +3,7 @@
 
 // How far cloth gives: one-sided limits on the stretch of warp and weft and on the angle of shear.
 
+#include "draping/energy/grain.h"
 #include "draping/energy/stretch.h"
 
 namespace toile {
@@ -17,7 +18,7 @@ namespace toile {
 /// its membrane alone would have.
 struct StrainLimit {
     std::array<int, 3> nodes{};
-    Eigen::Matrix<double, 3, 2> shape; ///< F = [x0 x1 x2] shape, columns weft and warp, 1/m
+    GrainShape shape; ///< F = [x0 x1 x2] shape
     double weft = 0, warp = 0;         ///< largest |F|^2; infinity: none
     double shear = 0;                  ///< largest sine squared of the shear angle; infinity: none
     double turn = 0.7;

@@ -44,7 +44,7 @@ Mat3 moduli(const Fabric& f) {
 StretchElement make_element(const Mat2& rest, const Fabric& fabric, const Patch& patch) {
     StretchElement element;
     element.patch = patch;
-    element.area = 0.5 * std::abs(rest.determinant());
+    element.area = rest_area(rest);
     const std::array<Vec2, 3> corner{Vec2(0, 0), Vec2(rest.col(0)), Vec2(rest.col(1))};
     Mat3 squares;
     for (int k = 0; k < 3; ++k) {

@@ -5,19 +5,14 @@
 // by itself, the angle between them, and hinges.
 
 #include "draping/energy/constraint.h"
+#include "draping/energy/grain.h"
 #include "draping/energy/hinge.h"
 
 namespace toile {
 
-/// One triangle, T = [x0 x1 x2] shape its map from the flat cloth to space: with S_u = |T u| - 1 for the unit directions u
-/// of weft and warp, E = A / 2 (k_weft S_weft^2 + k_warp S_warp^2 + shear gamma^2), gamma the departure of the angle between
-/// T weft and T warp from 90 degrees. No coupling of warp and weft (no Poisson effect); compression as stiff as tension.
-struct YarnTriangle {
-    std::array<int, 3> nodes{};
-    Eigen::Matrix<double, 3, 2> shape; ///< columns weft and warp, 1/m
-    double weft = 0, warp = 0, shear = 0; ///< stiffness times area, J
-};
-
+/// Of a GrainTriangle of area A: with S_u = |T u| - 1 for the unit directions u of weft and warp,
+/// E = A / 2 (k_weft S_weft^2 + k_warp S_warp^2 + shear gamma^2), gamma the departure of the angle between T weft and T warp
+/// from 90 degrees. No coupling of warp and weft (no Poisson effect); compression as stiff as tension.
 class TriangleCloth final : public ConstraintEnergy {
 public:
     /// `fabrics` has one entry per panel.
@@ -32,7 +27,7 @@ public:
     Constraint constraint(int k, const Points& x) const override;
 
 private:
-    std::vector<YarnTriangle> triangles_;
+    std::vector<GrainTriangle> triangles_;
     std::vector<HingeBend> bends_;
 };
 

@@ -5,6 +5,7 @@
 // Cloth, 2007): which edges of a mesh are yarns, and what the cloth resists beside.
 
 #include "draping/energy/bend.h"
+#include "draping/energy/grain.h"
 #include "draping/energy/tension.h"
 
 namespace toile {
@@ -15,17 +16,10 @@ namespace toile {
 /// when they are not fewer than the three coordinates per node, less the six of a rigid motion: nothing could move.
 std::vector<LengthConstraint> yarn_edges(const Garment& garment);
 
-/// One triangle, T = [x0 x1 x2] shape its map from the flat cloth to space, e = (T^T T - I) / 2 its strain:
+/// Shear, bending, tension of the yarns; and stretch of triangles along warp or weft where they have no edge that is a yarn
+/// in that direction. Of a GrainTriangle of area A, e = (T^T T - I) / 2 its strain:
 /// E = A / 2 (k_weft e_uu^2 + k_warp e_vv^2 + shear (2 e_uv)^2). No coupling of warp and weft; 2 e_uv is the sine of the
 /// shear angle where both keep their lengths.
-struct GrainTriangle {
-    std::array<int, 3> nodes{};
-    Eigen::Matrix<double, 3, 2> shape;    ///< columns weft and warp, 1/m
-    double weft = 0, warp = 0, shear = 0; ///< stiffness times area, J
-};
-
-/// Shear, bending, tension of the yarns; and stretch of triangles along warp or weft where they have no edge that is a yarn
-/// in that direction.
 class YarnCloth final : public Energy {
 public:
     /// `fabrics` has one entry per panel.

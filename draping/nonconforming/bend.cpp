@@ -159,7 +159,7 @@ struct Assembly {
     std::vector<Eigen::RowVector3d> offsets = {};
 
     int triangles() const { return int(garment.triangles.size()); }
-    double area(int t) const { return 0.5 * std::abs(garment.rest.edges[t].determinant()); }
+    double area(int t) const { return rest_area(garment.rest.edges[t]); }
     double stiffness(int t) const {
         const Fabric& f = fabrics[garment.panel_of_triangle[t]];
         return 0.5 * (f.bend_warp + f.bend_weft);

@@ -36,7 +36,7 @@ Midpoints make_midpoints(const Garment& garment, const std::vector<Fabric>& fabr
         const Fabric& fabric = fabrics[garment.panel_of_triangle[t]];
         if (!(fabric.density > 0))
             throw std::invalid_argument("fabric \"" + fabric.name + "\": density must be positive");
-        const double mass = fabric.density * std::abs(garment.rest.edges[t].determinant()) / 2;
+        const double mass = fabric.density * rest_area(garment.rest.edges[t]);
         for (int e : garment.edges.of_triangle[t])
             m.mass[e] += mass / 3;
     }

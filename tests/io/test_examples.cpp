@@ -71,7 +71,9 @@ TEST_CASE("the examples start clear of the form and of themselves", "[examples]"
     for (const char* name : names) {
         INFO(name);
         const Pattern pattern = read_pattern(folder + name + ".json");
-        const FlatPattern flat = triangulate(pattern, {.edge_length = 0.02});
+        TriangulateOptions options;
+        options.edge_length = 0.02;
+        const FlatPattern flat = triangulate(pattern, options);
         const TriMesh cloth{place(pattern, flat.levels.back()), flat.levels.back().triangles};
         CHECK(intersecting_pairs(cloth, form).empty());
         CHECK(self_intersecting_pairs(cloth).empty());

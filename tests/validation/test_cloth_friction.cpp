@@ -8,6 +8,7 @@
 #include "tests/support/cloth_scene.h"
 #include "tests/support/plain_fabric.h"
 #include "tests/support/shapes.h"
+#include "tests/support/tilted.h"
 
 #include <catch2/catch.hpp>
 
@@ -21,18 +22,6 @@ using namespace toile::test;
 namespace {
 
 constexpr double degree = std::numbers::pi / 180;
-
-ContactOptions barriers() {
-    ContactOptions o;
-    o.body = o.cloth = {0.5e-3, 0.5e-4, 1e6};
-    return o;
-}
-
-Points turned(Points points, double angle) {
-    const Mat3 turn = Eigen::AngleAxisd(-angle, Vec3::UnitZ()).toRotationMatrix();
-    for (Vec3& p : points) p = turn * p;
-    return points;
-}
 
 void lay(Points& x, const FlatMesh& mesh, double width, double height, double turn) {
     const Eigen::Rotation2Dd r(turn);
@@ -63,7 +52,7 @@ struct Layers {
     }
 
     std::unique_ptr<ClothProblem> problem(const FrictionCoefficients& friction, bool fixed, bool at_rest = false) const {
-        auto p = std::make_unique<ClothProblem>(garment, PanelFabrics{plain_fabric(2000, bend)}, board, barriers());
+        auto p = std::make_unique<ClothProblem>(garment, PanelFabrics{plain_fabric(2000, bend)}, board, light_barriers());
         p->gravity = 9.81;
         for (int i = 0; i < first && fixed; ++i) p->pin(i);
         p->rest_here(x, friction, at_rest);

@@ -7,6 +7,7 @@
 #include "tests/support/flat_mesh.h"
 #include "tests/support/plain_fabric.h"
 #include "tests/support/shapes.h"
+#include "tests/support/tilted.h"
 
 #include <catch2/catch.hpp>
 
@@ -21,12 +22,6 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-ContactOptions barriers() {
-    ContactOptions o;
-    o.body = o.cloth = {0.5e-3, 0.5e-4, 1e6};
-    return o;
-}
-
 // A surface of small unstructured triangles, as avatars have, in the plane y = 0.
 TriMesh table() {
     const FlatMesh flat = jittered_rectangle(0.3, 0.2, 0.012, 0.25, 4);
@@ -35,13 +30,6 @@ TriMesh table() {
         mesh.points.push_back({p.x() - 0.1, 0, 0.1 - p.y()});
     mesh.triangles = flat.triangles;
     return mesh;
-}
-
-Points turned(Points points, double angle) {
-    const Mat3 turn = Eigen::AngleAxisd(-angle, Vec3::UnitZ()).toRotationMatrix();
-    for (Vec3& p : points)
-        p = turn * p;
-    return points;
 }
 
 struct Slide {
@@ -60,7 +48,7 @@ Slide slide(double friction, double angle, double bend, TriMesh board) {
     SettleOptions options;
     options.tolerance = 1e-5;
     Cholesky factor;
-    ClothProblem level(garment, {plain_fabric(2000, bend)}, board, barriers());
+    ClothProblem level(garment, {plain_fabric(2000, bend)}, board, light_barriers());
     level.gravity = 9.81;
     level.rest_here(x, {1});
     REQUIRE(settle(level, x, factor, options).end == SettleEnd::settled);
@@ -68,7 +56,7 @@ Slide slide(double friction, double angle, double bend, TriMesh board) {
     x = turned(x, angle);
     board.points = turned(board.points, angle);
     const Points start = x;
-    ClothProblem tilted(garment, {plain_fabric(2000, bend)}, board, barriers());
+    ClothProblem tilted(garment, {plain_fabric(2000, bend)}, board, light_barriers());
     tilted.gravity = 9.81;
     tilted.rest_here(x, {friction});
     Slide s;

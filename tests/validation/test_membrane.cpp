@@ -5,6 +5,7 @@
 #include "draping/energy/stretch.h"
 
 #include "tests/support/plates.h"
+#include "tests/support/pulled_square.h"
 #include "tests/support/static_solver.h"
 
 #include <catch2/catch.hpp>
@@ -53,39 +54,10 @@ Vec2 border_stress(const std::vector<StretchElement>& elements, const FlatMesh& 
     return stress;
 }
 
-// Mean strain (along, across) of a unit square pulled by 1e-4 of stress / stiffness along x, sides free.
+// Of a unit square with its grain turned by `angle`.
 Vec2 off_axis_strain(double angle, double stress) {
-    const FlatMesh mesh = jittered_rectangle(1, 1, 0.2, 0.25, 3);
-    const Garment garment = garment_of(mesh, angle);
-    const int n = garment.node_count;
-    const VectorXd q = flat_start(mesh);
-    VectorXd load = VectorXd::Zero(3 * n);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-        for (int k = 0; k < 3; ++k) { // traction on border edges x = 0 and x = 1
-            const int a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
-            const Vec2 &p = mesh.points[a], &r = mesh.points[b];
-            for (double side : {0.0, 1.0})
-                if (std::abs(p.x() - side) < 1e-9 && std::abs(r.x() - side) < 1e-9)
-                    for (int end : {a, b})
-                        load[3 * end] += (2 * side - 1) * stress * (p - r).norm() / 2;
-        }
-    Freedoms freedoms(q);
-    hold_height(freedoms, n);
-    // Rigid motions: one corner stays, another keeps its height.
-    int origin = 0, right = 0, top = 0;
-    for (int i = 0; i < n; ++i) {
-        if (mesh.points[i].norm() < 1e-9) origin = i;
-        if ((mesh.points[i] - Vec2(1, 0)).norm() < 1e-9) right = i;
-        if ((mesh.points[i] - Vec2(0, 1)).norm() < 1e-9) top = i;
-    }
-    freedoms.hold(3 * origin, 0);
-    freedoms.hold(3 * origin + 1, 0);
-    freedoms.hold(3 * right + 1, 0);
-    freedoms.number();
-    const StaticResult r =
-        solve_static({stretch_term(make_stretch(garment, {orthotropic()}), n)}, load, freedoms, q);
-    REQUIRE(r.converged);
-    return {r.q[3 * right] - 1, r.q[3 * top + 1] - 1};
+    const Garment garment = garment_of(unit_square(), angle);
+    return pulled_strain(stretch_term(make_stretch(garment, {orthotropic()}), garment.node_count), stress);
 }
 
 } // namespace

@@ -49,9 +49,10 @@ std::string friction_sentence(const DrapeFacts& f, int nodes) {
 }
 
 std::string response_sentence(const DrapeFacts& f) {
-    return text("contact was answered by the response \"%s\" while the levels came to rest in damped motion; its guarantee "
+    return text("contact was answered by the response \"%s\" while the %s; its guarantee "
                 "at the end is \"%s\", steps in which a pair touched for all that: %d",
-                to_string(f.contact.response), to_string(f.contact.guarantee), f.contact.unresolved);
+                to_string(f.contact.response), f.motion ? "cloth moved" : "levels came to rest in damped motion",
+                to_string(f.contact.guarantee), f.contact.unresolved);
 }
 
 std::string method_sentence(const DrapeFacts& f, const Garment& g) {
@@ -61,8 +62,16 @@ std::string method_sentence(const DrapeFacts& f, const Garment& g) {
     if (f.method == Method::inextensible)
         limits = text("%d of %d edges lie along warp or weft and were brought back to their lengths in every step, before contact",
                       int(yarn_edges(g).size()), g.edges.size());
-    return text("the levels were brought to rest by the method \"%s\" instead of equilibrium, which sewed and placed the cloth; %s",
-                to_string(f.method), limits.c_str());
+    return text("the %s by the method \"%s\" instead of equilibrium, which sewed and placed the cloth; %s",
+                f.motion ? "cloth moved" : "levels were brought to rest", to_string(f.method), limits.c_str());
+}
+
+std::string motion_sentence(const MotionReport& m) {
+    return text("the garment was let go where it was sewn, at rest without its weight, and moved in time for %.4g s: %d frames at "
+                "%.4g per second, steps of %.4g ms, %d from frame to frame; air takes %.3g of the speed per second; no point "
+                "moves faster than %.3g m/s, which held some back in %d of %d steps",
+                (m.frames - 1) / m.rate, m.frames, m.rate, 1e3 * m.time_step, m.steps_per_frame, m.air_damping, m.most_speed, m.slowed,
+                m.steps);
 }
 
 std::string level_sentence(const DrapeFacts& f) {
@@ -82,7 +91,7 @@ std::string hook_sentence(const HookFacts& h) {
         return text("hooks held the edges labelled \"%s\" to the end, as asked: at %.1f cm on average, where "
                     "the file puts them at %.1f cm",
                     h.label.c_str(), 100 * h.end, 100 * h.placed);
-    return text("hooks held the edges labelled \"%s\" while the coarsest level settled; since they were "
+    return text("hooks held the edges labelled \"%s\" until the garment was to carry itself; since they were "
                 "released the edges moved by %+.1f mm in height, to %+.1f mm from where the file puts them",
                 h.label.c_str(), 1e3 * (h.end - h.released), 1e3 * (h.end - h.placed));
 }
@@ -163,6 +172,7 @@ std::vector<std::string> decisions(const DrapeFacts& f, const Garment& g, const 
                                  growth_sentence(f)};
     if (moves(f.method)) out.push_back(method_sentence(f, g));
     if (f.contact.response != ContactResponse::barrier) out.push_back(response_sentence(f));
+    if (f.motion) out.push_back(motion_sentence(*f.motion));
     if (f.untangled > 0)
         out.push_back(text("where cloth crossed itself after sewing or on a finer mesh, it was taken apart before contact "
                            "took over: at most %d crossings on a level", f.untangled));

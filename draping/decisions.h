@@ -35,6 +35,7 @@ struct DrapeFacts {
     TouchFacts touch;
     Method method = Method::equilibrium;
     ContactReport contact;
+    std::optional<MotionReport> motion; ///< of an animation
     FrictionCoefficients friction;
     double clearance = 0;            ///< m
     std::vector<HookFacts> hooks;

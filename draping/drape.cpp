@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/drape.h"
 
+#include "draping/animate.h"
 #include "draping/hooks.h"
 #include "draping/settle_level.h"
 #include "draping/sew_up.h"
@@ -78,9 +79,8 @@ double widest_girth(const TriMesh& body, double low, double high) {
     return widest;
 }
 
-/// What the promises that a residual does not show have come to.
-void prove(DrapeRun& run) {
-    if (run.stopped || run.result.status == DrapeStatus::too_small) return; // what is too small slides as well
+/// Whether the edges that hooks held are still at their height.
+void prove_heights(DrapeRun& run) {
     for (const auto& [label, height] : label_heights(run.garment, run.x, all_hooked(run))) {
         const double drop = run.carried_at[label] - height;
         if (drop < slid) continue;
@@ -93,7 +93,13 @@ void prove(DrapeRun& run) {
             run.result.where += text(", over a girth of %.1f cm, which they do not pass: %.1f cm are missing",
                                      100 * widest, 100 * (widest - longest));
     }
-    if (run.result.status != DrapeStatus::converged) return;
+}
+
+/// What the promises that a residual does not show have come to.
+void prove(DrapeRun& run) {
+    if (run.stopped || run.result.status == DrapeStatus::too_small) return; // what is too small slides as well
+    if (!is_animated(run.options)) prove_heights(run); // what moves may fall
+    if (run.result.status != DrapeStatus::converged && run.result.status != DrapeStatus::animated) return;
     const IntersectionCount n =
         count_intersections(node_triangles(run.garment), run.x, run.avatar, run.garment.stitches);
     if (n.cloth_avatar + n.cloth_cloth == 0) return;
@@ -141,7 +147,11 @@ bool start_again(DrapeRun& run) {
     run.facts.restarted = true;
     run.result.levels.push_back({run.edge_length(), int(closed.uv.size()), 0, 0, 0});
     choose_body(run);
-    if (run.fits_memory(run.level)) settle_level(run);
+    if (!run.fits_memory(run.level)) return true;
+    if (is_animated(run.options))
+        animate(run);
+    else
+        settle_level(run);
     return true;
 }
 
@@ -151,13 +161,15 @@ void sew_and_drape(DrapeRun& run) {
     choose_hooks(run);
     sew_coarsest(run);
     if (run.open) return;
-    settle_level(run);
+    const auto settle = is_animated(run.options) ? rest_without_weight : settle_level;
+    settle(run);
     while (!run.last_level() && !run.stopped && run.fits_memory(run.level + 1, run.level)) {
         ++run.level;
         choose_body(run);
         refine(run);
-        settle_level(run);
+        settle(run);
     }
+    if (is_animated(run.options) && run.last_level() && !run.stopped) animate(run);
 }
 
 } // namespace
@@ -165,6 +177,7 @@ void sew_and_drape(DrapeRun& run) {
 const char* to_string(DrapeStatus s) {
     switch (s) {
     case DrapeStatus::converged: return "converged";
+    case DrapeStatus::animated: return "animated";
     case DrapeStatus::stalled: return "stalled";
     case DrapeStatus::limit: return "limit";
     case DrapeStatus::too_small: return "too_small";
@@ -174,9 +187,11 @@ const char* to_string(DrapeStatus s) {
 }
 
 ContactResponse response_of(const DrapeOptions& o) {
-    const ContactResponse response = o.contact.value_or(usual_response(o.method));
-    if (moves(o.method) && response == ContactResponse::barrier)
-        throw std::invalid_argument(std::string("the method ") + to_string(o.method) + " moves cloth in time, which the contact "
+    const ContactResponse usual = is_animated(o) ? ContactResponse::impulse : usual_response(o.method);
+    const ContactResponse response = o.contact.value_or(usual);
+    if ((moves(o.method) || is_animated(o)) && response == ContactResponse::barrier)
+        throw std::invalid_argument(std::string(is_animated(o) ? "an animation" : "the method ") +
+                                    (is_animated(o) ? "" : to_string(o.method)) + " moves cloth in time, which the contact "
                                     "barrier cannot answer: it needs constraint, penalty, impulse or rigid");
     return response;
 }

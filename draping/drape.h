@@ -13,9 +13,9 @@
 
 namespace toile {
 
-enum class DrapeStatus { converged, stalled, limit, too_small, slid_off };
+enum class DrapeStatus { converged, animated, stalled, limit, too_small, slid_off };
 
-/// The word of the report: "converged", "stalled", "limit", "too_small", "slid_off".
+/// The word of the report: "converged", "animated", "stalled", "limit", "too_small", "slid_off".
 const char* to_string(DrapeStatus status);
 
 struct DrapeProgress {
@@ -25,6 +25,15 @@ struct DrapeProgress {
     double done = 0;            ///< share of the whole, [0, 1], never decreasing
     double seconds_left = 0;    ///< estimate; infinity while unknown
 };
+
+/// Instead of coming to rest, the sewn garment is let go and moves in real time, from rest without weight on. Times of frames
+/// are exact: steps are equal, a whole number of them to a frame.
+struct AnimateOptions {
+    double duration = 0;    ///< s; 0: the garment comes to rest instead
+    double rate = 24;       ///< frames per second
+    double air_damping = 1; ///< 1/s, share of the momentum that air takes
+};
+int frame_count(const AnimateOptions& options); ///< with the first, at time 0
 
 struct DrapeOptions {
     double tolerance = 1e-3;        ///< residual to reach; see DrapeResult::residual
@@ -37,6 +46,7 @@ struct DrapeOptions {
     Method method = Method::equilibrium;
     MethodOptions method_options;
     std::optional<ContactResponse> contact;
+    AnimateOptions animation;
     int max_iterations = 5000;      ///< Newton iterations, or steps of a motion, on all levels together
     double max_seconds = 1e9;       ///< wall time after which the state reached is returned with status limit
     double max_memory = 1e18;       ///< bytes of the process; the same happens when they or the next level come near
@@ -45,6 +55,8 @@ struct DrapeOptions {
     /// Called often (at least every two seconds); returns false to stop with the state reached.
     std::function<bool(const DrapeProgress&)> progress;
 };
+
+inline bool is_animated(const DrapeOptions& options) { return options.animation.duration > 0; }
 
 struct LevelReport {
     double edge_length = 0;
@@ -73,7 +85,20 @@ struct ContactReport {
     double seconds = 0;                    ///< wall time of contact, part of that of the stages
 };
 
-/// The response that acts. Throws std::invalid_argument when the barrier is asked for with a method that moves.
+/// How the frames of a motion came about.
+struct MotionReport {
+    double rate = 0;        ///< frames per second
+    double air_damping = 0; ///< 1/s
+    double most_speed = 0;  ///< m/s; nothing may move faster
+    double time_step = 0;   ///< s
+    int steps_per_frame = 0;
+    int frames = 0;         ///< recorded, with the first
+    int steps = 0;          ///< made
+    int slowed = 0;         ///< of them in which something would have moved faster
+    double speed = 0;       ///< m/s, of the fastest node at the end
+};
+
+/// The response that acts. Throws std::invalid_argument when the barrier is asked for with what moves in time.
 ContactResponse response_of(const DrapeOptions& options);
 
 /// A drape and by how much it met each promise.
@@ -90,6 +115,8 @@ struct DrapeResult {
     Method method = Method::equilibrium;
     BarrierReport barrier;
     ContactReport contact;
+    std::optional<MotionReport> motion;
+    std::vector<Points> frames; ///< of a motion: the nodes at equal times, the last one as in `state`
     std::vector<LevelReport> levels;
     std::vector<StageSeconds> seconds;
     std::vector<Landmark> landmarks; ///< of every labelled edge, by label

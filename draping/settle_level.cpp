@@ -32,13 +32,6 @@ constexpr double tight_gain = 0.1;             // this share has to have gone si
 constexpr int steps_per_iteration = 3;         // a motion takes more steps than Newton's method
 constexpr double coarse_motion_residual = 0.3; // less than the 1 of free fall
 
-/// Bands are softened with the cloth, which they would crumple otherwise.
-void soften(const DrapeRun& run, ClothProblem& problem, Loads& loads, double softness) {
-    problem.sheet().softness = softness;
-    loads.elastics = elastic_segments(run.staging, run.garment);
-    for (ElasticSegment& s : loads.elastics) s.stiffness *= softness;
-}
-
 /// Takes the cloth apart without regard to its pattern: the body gives way meanwhile, and parts go back as a whole.
 /// Returns whether that undid it; the cloth stays as it is otherwise.
 bool untangle_as_mesh(DrapeRun& run) {
@@ -50,29 +43,6 @@ bool untangle_as_mesh(DrapeRun& run) {
     run.x = u.x;
     ++run.facts.untangled_as_mesh;
     return true;
-}
-
-void note_release(DrapeRun& run) {
-    const std::map<std::string, double> now = label_heights(run.garment, run.x, run.carried);
-    for (const std::string& label : run.carried)
-        run.facts.hooks.push_back({label, false, run.carried_at[label], now.at(label), 0});
-}
-
-void note_facts(DrapeRun& run, const Loads& loads, const TouchFacts& touch) {
-    DrapeFacts& f = run.facts;
-    f.touch = touch;
-    f.contact = run.result.contact;
-    f.friction = run.result.friction;
-    f.clearance = run.options.clearance;
-    f.pins = int(pinned_places(run.staging, run.level, run.garment).size());
-    f.band_segments = int(loads.elastics.size());
-    for (const ElasticSegment& s : loads.elastics) {
-        f.band_rest += s.rest;
-        f.band_length += (run.x[s.b] - run.x[s.a]).norm();
-        f.band_pull = std::max(f.band_pull, s.stiffness * strain(s, run.x));
-    }
-    f.inner_stitches = int(run.garment.stitches.size());
-    f.inner_gap = seam_gap_max(run.garment, run.x);
 }
 
 /// Whether cloth that nothing else holds is all below the body, which it has slid off: it would fall for ever.
@@ -101,6 +71,35 @@ struct TightWatch {
 };
 
 } // namespace
+
+void soften(const DrapeRun& run, ClothProblem& problem, Loads& loads, double softness) {
+    problem.sheet().softness = softness;
+    loads.elastics = elastic_segments(run.staging, run.garment);
+    for (ElasticSegment& s : loads.elastics) s.stiffness *= softness;
+}
+
+void note_release(DrapeRun& run) {
+    const std::map<std::string, double> now = label_heights(run.garment, run.x, run.carried);
+    for (const std::string& label : run.carried)
+        run.facts.hooks.push_back({label, false, run.carried_at[label], now.at(label), 0});
+}
+
+void note_facts(DrapeRun& run, const Loads& loads, const TouchFacts& touch) {
+    DrapeFacts& f = run.facts;
+    f.touch = touch;
+    f.contact = run.result.contact;
+    f.friction = run.result.friction;
+    f.clearance = run.options.clearance;
+    f.pins = int(pinned_places(run.staging, run.level, run.garment).size());
+    f.band_segments = int(loads.elastics.size());
+    for (const ElasticSegment& s : loads.elastics) {
+        f.band_rest += s.rest;
+        f.band_length += (run.x[s.b] - run.x[s.a]).norm();
+        f.band_pull = std::max(f.band_pull, s.stiffness * strain(s, run.x));
+    }
+    f.inner_stitches = int(run.garment.stitches.size());
+    f.inner_gap = seam_gap_max(run.garment, run.x);
+}
 
 void add_fixtures(DrapeRun& run, ClothProblem& problem) {
     for (const auto& [node, place] : pinned_places(run.staging, run.level, run.garment)) {

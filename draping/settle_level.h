@@ -15,6 +15,15 @@ inline constexpr double hard_limit = 0.9; ///< and the one to end with, hardened
 /// stay and stitches that cannot become shared nodes.
 void add_fixtures(DrapeRun& run, ClothProblem& problem);
 
+/// Softens the membrane, and bands with the cloth, which they would crumple otherwise.
+void soften(const DrapeRun& run, ClothProblem& problem, Loads& loads, double softness);
+
+/// Books that the hooks of edges that carry are let go, and at what height.
+void note_release(DrapeRun& run);
+
+/// Books what acts and touches at the end.
+void note_facts(DrapeRun& run, const Loads& loads, const TouchFacts& touch);
+
 /// Says where a drape that has not converged is held up: too little cloth, what blocks the step, or the worst
 /// force.
 void note_where(DrapeRun& run, const ClothProblem& problem, SettleEnd end, int worst_node);

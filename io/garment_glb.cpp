@@ -34,12 +34,13 @@ struct Writer {
     Json gltf;
     std::string binary;
 
-    /// Appends the values and returns the index of an accessor for them.
+    /// Appends the values and returns the index of an accessor for them. Only what a mesh is made of has a target.
     template <class T>
-    int accessor(const std::vector<T>& values, int per_item, const char* type, int component, int target) {
+    int accessor(const std::vector<T>& values, int per_item, const char* type, int component, int target = 0) {
         const std::size_t bytes = values.size() * sizeof(T);
-        gltf["bufferViews"].push_back(
-            {{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", bytes}, {"target", target}});
+        Json view{{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", bytes}};
+        if (target != 0) view["target"] = target;
+        gltf["bufferViews"].push_back(std::move(view));
         binary.append(reinterpret_cast<const char*>(values.data()), bytes);
         gltf["accessors"].push_back({{"bufferView", gltf["bufferViews"].size() - 1},
                                      {"componentType", component},
@@ -111,7 +112,46 @@ void append(std::vector<float>& out, const Vec3& p) {
         out.push_back(float(p[k]));
 }
 
-std::size_t write_panel(Writer& w, const Garment& g, const Points& x, const Points& normal,
+/// The cloth of a frame.
+struct Shape {
+    Points x, normal; ///< by node
+};
+
+/// Of every frame but the last, which is the mesh itself, by how much it differs from that at these nodes.
+Json targets(Writer& w, const std::vector<float>& nodes, const Shape& mesh, const std::vector<Shape>& frames) {
+    Json list = Json::array();
+    const Points shown = rounded_to_float(mesh.x), lit = rounded_to_float(mesh.normal);
+    for (const Shape& frame : frames) {
+        std::vector<float> moved, turned;
+        for (const float n : nodes) {
+            append(moved, frame.x[std::size_t(n)] - shown[std::size_t(n)]);
+            append(turned, frame.normal[std::size_t(n)] - lit[std::size_t(n)]);
+        }
+        list.push_back({{"POSITION", w.positions(moved)}, {"NORMAL", w.floats(turned, 3, "VEC3")}});
+    }
+    return list;
+}
+
+/// One weight after the other goes to 1 and back, and at the end all are 0: between two frames points move on lines.
+void write_animation(Writer& w, const Json& panels, int frames, double rate) {
+    std::vector<float> times, weights(std::size_t(frames) * std::size_t(frames - 1), 0.0f);
+    for (int k = 0; k < frames; ++k) {
+        times.push_back(float(k / rate));
+        if (k + 1 < frames) weights[std::size_t(k) * std::size_t(frames - 1) + std::size_t(k)] = 1;
+    }
+    const int input = w.accessor(times, 1, "SCALAR", type_float), output = w.accessor(weights, 1, "SCALAR", type_float);
+    w.gltf["accessors"][std::size_t(input)]["min"] = {times.front()};
+    w.gltf["accessors"][std::size_t(input)]["max"] = {times.back()};
+    Json channels = Json::array();
+    for (const Json& node : panels)
+        channels.push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}});
+    w.gltf["animations"] = Json::array(
+        {{{"name", "motion"},
+          {"samplers", Json::array({{{"input", input}, {"output", output}, {"interpolation", "LINEAR"}}})},
+          {"channels", channels}}});
+}
+
+std::size_t write_panel(Writer& w, const Garment& g, const Shape& shape, const std::vector<Shape>& frames,
                         const UvLayout& layout, int panel) {
     std::vector<std::uint32_t> local(g.uv.size());
     std::vector<float> position, direction, texture, node;
@@ -119,8 +159,8 @@ std::size_t write_panel(Writer& w, const Garment& g, const Points& x, const Poin
         if (g.panel_of_vertex[v] != panel) continue;
         const auto n = std::size_t(g.node_of_vertex[v]);
         local[v] = std::uint32_t(node.size());
-        append(position, x[n]);
-        append(direction, normal[n]);
+        append(position, shape.x[n]);
+        append(direction, shape.normal[n]);
         const Vec2 t = texture_coordinates(g, layout, int(v));
         texture.push_back(float(t.x()));
         texture.push_back(float(1 - t.y())); // glTF counts v downward
@@ -138,8 +178,10 @@ std::size_t write_panel(Writer& w, const Garment& g, const Points& x, const Poin
     const std::string& name = g.panel_names[std::size_t(panel)];
     const Vec2& origin = layout.origin[std::size_t(panel)];
     const int material = w.material(name, panel_colour(panel), true);
-    return w.mesh(name, std::move(attributes), w.indices(index), material,
-                  {{"uv_metres", layout.scale}, {"uv_origin", {origin.x(), origin.y()}}});
+    const std::size_t mesh = w.mesh(name, std::move(attributes), w.indices(index), material,
+                                    {{"uv_metres", layout.scale}, {"uv_origin", {origin.x(), origin.y()}}});
+    if (!frames.empty()) w.gltf["meshes"].back()["primitives"][0]["targets"] = targets(w, node, shape, frames);
+    return mesh;
 }
 
 std::size_t write_avatar(Writer& w, const TriMesh& body) {
@@ -414,13 +456,18 @@ std::string garment_glb(const Garment& g, const Points& x, const WriteOptions& o
         w.gltf["asset"]["extras"]["stitches"].push_back({s.a, s.b[0], s.b[1], s.r});
     w.gltf["scene"] = 0;
     const UvLayout layout = lay_out_panels(g);
-    const Points normal = normals(node_triangles(g), x);
+    const std::vector<Triangle> cloth = node_triangles(g);
+    const Shape shape{x, normals(cloth, x)};
+    std::vector<Shape> frames;
+    for (std::size_t k = 0; options.motion && k + 1 < options.motion->frames.size(); ++k)
+        frames.push_back({options.motion->frames[k], normals(cloth, options.motion->frames[k])});
     std::vector<bool> has_cloth(g.panel_names.size(), false);
     for (const int p : g.panel_of_triangle)
         has_cloth[std::size_t(p)] = true;
     Json roots = Json::array();
     for (std::size_t p = 0; p < g.panel_names.size(); ++p)
-        if (has_cloth[p]) roots.push_back(write_panel(w, g, x, normal, layout, int(p)));
+        if (has_cloth[p]) roots.push_back(write_panel(w, g, shape, frames, layout, int(p)));
+    if (!frames.empty()) write_animation(w, roots, int(frames.size()) + 1, options.motion->rate);
     if (options.avatar) roots.push_back(write_avatar(w, *options.avatar));
     w.gltf["scenes"] = Json::array({{{"nodes", roots}}});
     w.gltf["buffers"] = Json::array({{{"byteLength", w.binary.size()}}});

@@ -24,7 +24,7 @@ void append(std::string& out, double value) {
 
 void append_points(std::string& out, const Points& x, const WriteOptions& options) {
     for (const Vec3& p : x) {
-        const Vec3 q = (options.z_up ? Vec3(p.x(), -p.z(), p.y()) : p) / options.metres_per_unit;
+        const Vec3 q = in_obj(p, options);
         out += 'v';
         for (int k = 0; k < 3; ++k)
             append(out += ' ', q[k]);
@@ -369,7 +369,7 @@ std::string moved_obj(std::string_view text, const std::string& name, const std:
     }
     Points is = was;
     for (const auto& [v, p] : moved)
-        is.at(v) = (file.z_up ? Vec3(p.x(), -p.z(), p.y()) : p) / file.metres_per_unit;
+        is.at(v) = in_obj(p, file);
     const Shading shading = read_shading(text, reader);
     const Points faced = facing(shading, was), faces = facing(shading, is);
 

@@ -132,6 +132,17 @@ Json inside_json(const InsideBody& i, const Garment& garment) {
     return json;
 }
 
+Json motion(const MotionReport& m) {
+    return {{"duration", (m.frames - 1) / m.rate},
+            {"fps", m.rate},
+            {"frames", m.frames},
+            {"time_step", m.time_step},
+            {"steps_per_frame", m.steps_per_frame},
+            {"air_damping", m.air_damping},
+            {"slowed", m.slowed},
+            {"speed", m.speed}};
+}
+
 } // namespace
 
 nlohmann::ordered_json strain_json(const StrainMeasure& m) {
@@ -228,6 +239,7 @@ nlohmann::ordered_json make_report(const DrapeResult& r, const TriMesh& body, co
         {"warnings", joined(context.warnings, r.warnings)},
     };
     if (!context.frames.empty()) report["frames"] = frames(context.frames);
+    if (r.motion) report["motion"] = motion(*r.motion);
     return report;
 }
 

@@ -3,11 +3,9 @@
 
 #include <cerrno>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 
 #include <unistd.h>
 
@@ -32,45 +30,50 @@ std::string neighbour(const std::string& path) {
     throw InputError("cannot write " + path + ": " + why);
 }
 
-struct Close {
-    void operator()(std::FILE* f) const { std::fclose(f); }
-};
-using File = std::unique_ptr<std::FILE, Close>;
-
-File open_neighbour(const std::string& path) {
+std::FILE* open_neighbour(const std::string& path) {
     if (path.empty()) throw InputError("cannot write to a file without a name");
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) refuse(path, "it is a folder");
     // Renaming over a device would replace it by a file.
     if (fs::exists(path, ignored) && !fs::is_regular_file(path, ignored))
         refuse(path, "it is not a regular file");
-    File file(std::fopen(neighbour(path).c_str(), "wb"));
+    std::FILE* file = std::fopen(neighbour(path).c_str(), "wb");
     if (!file) refuse(path, std::strerror(errno));
     return file;
 }
 
 } // namespace
 
-void write_file(const std::string& path, std::string_view bytes) {
-    File file = open_neighbour(path);
-    const std::string part = neighbour(path);
-    const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file.get()) == bytes.size();
-    const bool flushed = std::fflush(file.get()) == 0;
-    std::string why = written && flushed ? "" : std::strerror(errno);
-    file.reset();
-    std::error_code failed;
-    if (why.empty()) fs::rename(part, target_of(path), failed);
-    if (failed) why = failed.message();
-    if (why.empty()) return;
-    fs::remove(part, failed);
-    refuse(path, why);
+FileWriter::FileWriter(const std::string& path)
+    : path_(path), part_(neighbour(path)), file_(open_neighbour(path)) {}
+
+FileWriter::~FileWriter() {
+    if (!file_) return;
+    std::fclose(file_);
+    std::error_code ignored;
+    fs::remove(part_, ignored);
 }
 
-void check_writable(const std::string& path) {
-    open_neighbour(path).reset();
-    std::error_code ignored;
-    fs::remove(neighbour(path), ignored);
+void FileWriter::write(std::string_view bytes) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) refuse(path_, std::strerror(errno));
 }
+
+void FileWriter::commit() {
+    if (std::fflush(file_) != 0) refuse(path_, std::strerror(errno));
+    std::error_code failed;
+    fs::rename(part_, target_of(path_), failed);
+    if (failed) refuse(path_, failed.message());
+    std::fclose(file_);
+    file_ = nullptr;
+}
+
+void write_file(const std::string& path, std::string_view bytes) {
+    FileWriter file(path);
+    file.write(bytes);
+    file.commit();
+}
+
+void check_writable(const std::string& path) { FileWriter{path}; }
 
 std::string read_file(const std::string& path, std::uintmax_t max_bytes) {
     std::error_code failed;

@@ -8,12 +8,24 @@
 
 namespace toile {
 
+/// The points of a mesh in frame after frame at equal times, at least one frame, all of as many points.
+struct PointFrames {
+    const std::vector<Points>& frames;
+    double rate; ///< per second, positive
+};
+
 /// Of a written OBJ; GLB is metres and y up by its standard.
 struct WriteOptions {
     double metres_per_unit = 1;      ///< 1 m, 0.01 cm, 0.001 mm
     bool z_up = false;               ///< otherwise y up; z up is (x, -z, y)
     const TriMesh* avatar = nullptr; ///< written too, as an object or mesh of its own called "avatar"
+    const PointFrames* motion = nullptr; ///< GLB: played as an animation; the last of its frames is the garment
 };
+
+/// A point in metres, y up, as a file of these options has it.
+inline Vec3 in_obj(const Vec3& p, const WriteOptions& options) {
+    return (options.z_up ? Vec3(p.x(), -p.z(), p.y()) : p) / options.metres_per_unit;
+}
 
 struct ReadGarment;
 
@@ -35,6 +47,9 @@ void write_moved(const std::string& path, const std::string& from, const ReadGar
 
 /// Every file that write_moved(path, from) makes.
 std::vector<std::string> moved_files(const std::string& path, const std::string& from);
+
+/// Bytes of a GLB's animation, near enough.
+double animation_bytes(const Garment& garment, int frames);
 
 /// Every file that write_garment(path) makes.
 std::vector<std::string> garment_files(const std::string& path);

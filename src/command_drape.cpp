@@ -20,6 +20,7 @@ namespace {
 
 struct DrapeArguments {
     DrapeJob job;
+    bool rate_chosen = false, air_chosen = false;
     bool sweeps_chosen = false;
     int threads = 0;
     bool quiet = false, json = false;
@@ -34,12 +35,34 @@ void refuse_useless_method(const DrapeArguments& a) {
                                         "impulse (the default) or rigid");
     if (moves(o.method) && !a.job.avatar_sequence.empty())
         throw CommandLineError(method + " drapes on a body at rest; a sequence of --avatar-sequence is followed by equilibrium");
-    if (o.method_options.time_step > 0 && response_of(o) == ContactResponse::barrier)
+    if (o.method_options.time_step > 0 && !is_animated(o) && response_of(o) == ContactResponse::barrier)
         throw CommandLineError("--time-step is that of a motion: equilibrium with the contact barrier has no time; name another "
                                "--method or --contact");
     if (a.sweeps_chosen && o.method != Method::springs_limited)
         throw CommandLineError("--limit and --sweep are about limits on springs, which " + method +
                                " does not have: name --method springs-limited");
+}
+
+/// The same of options about frames in time.
+void refuse_useless_frames(const DrapeArguments& a) {
+    const AnimateOptions& o = a.job.drape.animation;
+    const bool animated = is_animated(a.job.drape), sequence = !a.job.avatar_sequence.empty();
+    if (a.air_chosen && !animated) throw CommandLineError("--air-damping is about the motion that --animate records");
+    if (a.rate_chosen && !animated && !sequence)
+        throw CommandLineError("--fps is about the frames of --animate or --avatar-sequence: name one of them");
+    if (animated && sequence)
+        throw CommandLineError("--animate lets a garment go on a body at rest; name it or --avatar-sequence");
+    if (animated && a.job.garments.empty())
+        throw CommandLineError("--animate has nothing to write its frames to: name an .obj or .glb with -o");
+    if (animated && a.job.drape.contact == ContactResponse::barrier)
+        throw CommandLineError("--animate moves cloth in time, which --contact barrier cannot answer: name constraint, penalty, "
+                               "impulse (the default) or rigid");
+    if (animated && frame_count(o) < 2)
+        throw CommandLineError(text("--animate asks for %.4g s, in which there is no second frame at %.4g per second", o.duration,
+                                    o.rate));
+    const auto is_obj = [](const std::string& path) { return garment_format(path) == GarmentFormat::obj; };
+    if (a.rate_chosen && sequence && std::none_of(a.job.garments.begin(), a.job.garments.end(), is_obj))
+        throw CommandLineError("--fps makes point caches beside the .obj files of an --avatar-sequence: name one with -o");
 }
 
 void refuse_useless(const DrapeArguments& a) {
@@ -57,6 +80,7 @@ void refuse_useless(const DrapeArguments& a) {
             throw CommandLineError(error.what());
         }
     }
+    refuse_useless_frames(a);
 }
 
 std::string joined(const std::vector<std::string>& names) {
@@ -84,7 +108,12 @@ void summarise_frames(std::ostream& out, const std::vector<FrameRow>& frames) {
                 int(frames.size()), converged, with_body, with_itself, seconds / double(frames.size()));
 }
 
-/// The report in five lines, and one on the frames of a sequence.
+void summarise_motion(std::ostream& out, const MotionReport& m) {
+    out << text("motion: %d frames at %.4g per second, %d steps of %.3g ms from one to the next; at most %.2g m/s at the end\n",
+                m.frames, m.rate, m.steps_per_frame, 1e3 * m.time_step, m.speed);
+}
+
+/// The report in five lines, and one on the frames of a sequence or of a motion.
 void summarise(std::ostream& out, const DrapeOutcome& outcome) {
     const auto r = nlohmann::json::parse(outcome.report);
     const auto& strain = r["strain"];
@@ -100,6 +129,7 @@ void summarise(std::ostream& out, const DrapeOutcome& outcome) {
         << ", weft to " << percent(strain["weft"]["max"]) << " of " << percent(strain["weft"]["limit"])
         << "; compressed " << percent(strain["compressed_area"]) << " of the area\n";
     if (!outcome.frames.empty()) summarise_frames(out, outcome.frames);
+    if (outcome.result.motion) summarise_motion(out, *outcome.result.motion);
     constexpr std::size_t most_names = 12; // of a sequence, the first and the last tell the others
     std::vector<std::string> written = outcome.written;
     if (written.size() > most_names) written = {written.front(), "...", written.back()};
@@ -118,6 +148,7 @@ int drape_command(const DrapeArguments& arguments, const Console& console) {
     set_threads(arguments.threads);
     DrapeJob job = arguments.job;
     job.avatar_sequence = sequence_files(job.avatar_sequence);
+    if (arguments.rate_chosen && !is_animated(job.drape)) job.sequence_rate = job.drape.animation.rate;
     const Interrupt interrupt;
     ProgressLine line(console.err, console.terminal && !arguments.quiet);
     job.drape.progress = [&](const DrapeProgress& progress) {
@@ -189,6 +220,26 @@ void add_method(CLI::App& command, DrapeArguments& a) {
         ->type_name("listed|reversed|longest-first|from-top");
 }
 
+/// --animate and what goes with it.
+void add_animate(CLI::App& command, DrapeArguments& a) {
+    AnimateOptions& o = a.job.drape.animation;
+    add_duration(command, "animate", o.duration, 1e-3, 3600,
+                 "Let the sewn garment go and record its motion in real time: frames in the .glb, point caches (.pc2, .mdd) beside "
+                 "the .obj");
+    const auto add_number = [&command](const std::string& name, double& value, bool& chosen, CLI::Range range,
+                                       const std::string& help) {
+        command
+            .add_option_function<double>(
+                "--" + name, [&value, &chosen](double given) { value = given, chosen = true; }, help)
+            ->check(range.description(""))
+            ->type_name("NUMBER");
+    };
+    add_number("fps", o.rate, a.rate_chosen, CLI::Range(0.1, 10000.0),
+               "Frames per second of --animate (default 24); with --avatar-sequence, point caches beside the .obj at this rate");
+    add_number("air-damping", o.air_damping, a.air_chosen, CLI::Range(0.0, 1000.0),
+               "Share of its speed, per second, that air takes from the cloth of --animate (default 1)");
+}
+
 } // namespace
 
 void add_drape(CLI::App& app, Command& chosen) {
@@ -238,6 +289,7 @@ void add_drape(CLI::App& app, Command& chosen) {
         ->check(CLI::IsMember({"barrier", "constraint", "penalty", "impulse", "rigid"}).description(""))
         ->type_name("barrier|constraint|penalty|impulse|rigid");
     add_method(command, *a);
+    add_animate(command, *a);
     command
         .add_option("--hold", job.drape.hold,
                     "Labelled edges held at their height to the end: a label of the file, or waist, collar, "

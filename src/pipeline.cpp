@@ -5,6 +5,7 @@
 #include "geometry/parallel.h"
 #include "io/companion.h"
 #include "io/hash.h"
+#include "io/point_cache.h"
 #include "geometry/text.h"
 #include "io/preview.h"
 #include "io/read_avatar.h"
@@ -14,6 +15,7 @@
 #include "draping/hooks.h"
 #include "src/drape_input.h"
 #include "src/exit_code.h"
+#include "src/quantity.h"
 
 #include <algorithm>
 #include <chrono>
@@ -28,6 +30,9 @@ namespace toile {
 namespace {
 
 constexpr std::uintmax_t max_file = std::uintmax_t(1) << 30;
+
+constexpr double most_frames = 4e9;        // bytes of all positions of an animation
+constexpr double most_animation = 1 << 30; // bytes of a GLB, as large as those that are read
 
 /// Seconds of the stages, and of all.
 class Stopwatch {
@@ -55,6 +60,15 @@ std::string numbered(const std::string& path, int frame) {
     return (p.parent_path() / (p.stem().string() + text(".%04d", frame) + p.extension().string())).string();
 }
 
+/// The garment files that have point caches beside them.
+std::vector<std::string> cached(const DrapeJob& job) {
+    std::vector<std::string> garments;
+    for (const std::string& path : job.garments)
+        if ((is_animated(job.drape) || job.sequence_rate > 0) && garment_format(path) == GarmentFormat::obj)
+            garments.push_back(path);
+    return garments;
+}
+
 std::vector<std::string> targets(const DrapeJob& job) {
     std::vector<std::string> garments = job.garments, all;
     if (!job.avatar_sequence.empty()) garments.clear();
@@ -63,6 +77,8 @@ std::vector<std::string> targets(const DrapeJob& job) {
     for (const std::string& garment : garments)
         for (const std::string& file : garment_files(garment))
             all.push_back(file);
+    for (const std::string& garment : cached(job))
+        for (const std::string& file : cache_files(garment)) all.push_back(file);
     if (!job.preview.empty()) all.push_back(job.preview);
     if (!job.report.empty()) all.push_back(job.report);
     return all;
@@ -91,6 +107,8 @@ std::string input_hash(const DrapeJob& job) {
          {double(how.limits.sweeps), how.time_step, how.spring_damping, how.beyond, job.form.height, job.form.bust, job.form.waist, job.form.hip, job.edge_length, job.drape.tolerance,
           job.drape.clearance, job.drape.friction, job.drape.cloth_friction, job.drape.gravity})
         hash.add(std::to_string(value) + ' ');
+    if (const AnimateOptions& a = job.drape.animation; is_animated(job.drape))
+        for (const double value : {a.duration, a.rate, a.air_damping}) hash.add(std::to_string(value) + " animation ");
     return hash.text();
 }
 
@@ -129,6 +147,22 @@ bool writes_floats(const DrapeJob& job) {
     return false;
 }
 
+/// All frames of an animation are held until they are written.
+void refuse_too_many_frames(const DrapeJob& job, const Garment& garment) {
+    if (!is_animated(job.drape)) return;
+    const double frames = frame_count(job.drape.animation), vertices = double(garment.uv.size());
+    const double held = frames * vertices * sizeof(Vec3), most = std::min(job.drape.max_memory, most_frames);
+    const std::string motion = text("a motion of %.0f frames of %.0f vertices", frames, vertices);
+    const std::string advice = "; ask for less time, fewer frames per second or a coarser mesh";
+    if (held > most)
+        throw InputError(motion + " takes " + show_size(held) + " of memory, more than the " + show_size(most) +
+                         " that it may take" + advice);
+    const double bytes = animation_bytes(garment, int(frames));
+    if (writes_floats(job) && bytes > most_animation)
+        throw InputError(motion + " makes a GLB of about " + show_size(bytes) + ", more than the " +
+                         show_size(most_animation) + " that are written" + advice);
+}
+
 /// The body of a job, and its further frames.
 ReadSequence read_motion(const DrapeJob& job) {
     if (!job.avatar_sequence.empty()) {
@@ -140,9 +174,11 @@ ReadSequence read_motion(const DrapeJob& job) {
     return {std::move(body.mesh), {}, std::move(body.notes)};
 }
 
-/// The garment files of one frame; of no sequence, those that were asked for.
-void write_garments(const DrapeJob& job, const Garment& garment, const Points& x, const TriMesh& body, int frame) {
+/// The garment files of one frame; of no sequence, those that were asked for, with their motion if there is one.
+void write_garments(const DrapeJob& job, const Garment& garment, const Points& x, const TriMesh& body, int frame,
+                    const PointFrames* motion = nullptr) {
     WriteOptions options = job.write;
+    options.motion = motion;
     options.avatar = job.with_avatar ? &body : nullptr;
     for (const std::string& path : job.garments)
         write_garment(job.avatar_sequence.empty() ? path : numbered(path, frame), garment, x, options);
@@ -152,7 +188,11 @@ void write_dressed(const DrapeJob& job, const DrapeOutcome& outcome) {
     const Garment& garment = outcome.result.garment;
     const Points& x = outcome.result.state.positions;
     const std::vector<int> numbers = frame_numbers(job.avatar_sequence);
-    write_garments(job, garment, x, outcome.body, numbers.empty() ? 0 : numbers[0]);
+    const PointFrames motion{outcome.result.frames, job.drape.animation.rate};
+    const bool moved = !motion.frames.empty();
+    write_garments(job, garment, x, outcome.body, numbers.empty() ? 0 : numbers[0], moved ? &motion : nullptr);
+    if (moved)
+        for (const std::string& path : cached(job)) write_caches(path, motion, job.write);
     if (!job.preview.empty()) write_preview(job.preview, garment, x, outcome.body);
 }
 
@@ -172,16 +212,19 @@ void follow_sequence(const DrapeJob& job, const DrapeInput& input, const std::ve
     const std::vector<int> numbers = frame_numbers(job.avatar_sequence);
     const std::vector<Triangle> cloth = node_triangles(outcome.result.garment);
     std::vector<IntersectionCount> rounded;
+    std::vector<Points> garments{outcome.result.state.positions}; // for the caches
     options.progress = part_of_job(job, 1 / double(numbers.size()), 1);
     FollowOptions how;
     how.done = [&](int k, const Points& x) {
         const TriMesh body{frames[k], outcome.body.triangles};
         write_garments(job, outcome.result.garment, x, body, numbers[k + 1]);
+        if (job.sequence_rate > 0) garments.push_back(x);
         if (writes_floats(job))
             rounded.push_back(
                 count_intersections(cloth, rounded_to_float(x), body, outcome.result.garment.stitches));
     };
     const auto reports = follow(input.staging, outcome.result, outcome.body, frames, input.fabrics, options, how);
+    for (const std::string& path : cached(job)) write_caches(path, {garments, job.sequence_rate}, job.write);
     for (std::size_t k = 0; k < reports.size(); ++k) {
         FrameRow& row = outcome.frames.emplace_back(FrameRow{numbers[k + 1], reports[k]});
         if (rounded.empty()) continue;
@@ -218,7 +261,8 @@ TriMesh form_of(const FormMeasures& measures) {
 
 bool converged(const DrapeJob& job, const DrapeOutcome& outcome) {
     const auto came_to_rest = [](const FrameRow& row) { return row.report.status == FrameStatus::converged; };
-    return outcome.result.status == DrapeStatus::converged &&
+    const DrapeStatus status = outcome.result.status;
+    return (status == DrapeStatus::converged || status == DrapeStatus::animated) &&
            outcome.frames.size() + 1 >= job.avatar_sequence.size() &&
            std::all_of(outcome.frames.begin(), outcome.frames.end(), came_to_rest);
 }
@@ -255,6 +299,7 @@ DrapeOutcome run_job(const DrapeJob& job) {
                                             needs_grain_lattice(job.drape.method));
     context.decisions.insert(context.decisions.end(), input.notes.begin(), input.notes.end());
     refuse_unknown_labels(job, input.staging);
+    refuse_too_many_frames(job, input.staging.levels.back().garment);
     watch.lap(context, is_staged(job.pattern) ? "read" : "triangulate");
 
     DrapeOptions options = job.drape;

@@ -26,6 +26,7 @@ struct DrapeJob {
     std::function<bool()> interrupted; ///< whether drape.progress stopped the work; for the report's `where`
 
     std::vector<std::string> garments; ///< files to write: .obj, .glb
+    double sequence_rate = 0; ///< frames per second of avatar_sequence, for point caches; 0: none are written
     std::string preview, report;       ///< files; empty: not written
     WriteOptions write;                ///< unit and up axis; its avatar is set by with_avatar
     bool with_avatar = false;
@@ -41,14 +42,15 @@ struct DrapeOutcome {
 
 /// Does the job. Throws InputError (a sentence) when a file is refused or a target cannot be written, before
 /// anything is; a drape that does not converge is written all the same, and `result.status` says so. Of a sequence
-/// every frame's garment is written to files of its number, name.0001.obj for name.obj, as soon as it is done.
+/// every frame's garment is written to files of its number, name.0001.obj for name.obj, as soon as it is done. The frames of an
+/// animation go into every .glb, and those of either into point caches beside every .obj.
 DrapeOutcome run_job(const DrapeJob& job);
 
 /// Minutes of work must not end in a target that cannot be written or in an overwritten input: throws InputError. Inputs
 /// may be empty.
 void refuse_targets(const std::vector<std::string>& inputs, const std::vector<std::string>& targets);
 
-/// Whether the drape and all frames asked for converged.
+/// Whether the drape and all frames asked for converged, or the animation ran to its end.
 bool converged(const DrapeJob& job, const DrapeOutcome& outcome);
 
 /// The built-in form. Throws CommandLineError when a measure is out of range.

@@ -6,6 +6,7 @@
 #include "src/pipeline.h"
 #include "tests/src/run.h"
 #include "tests/support/pose.h"
+#include "tests/support/read_cache.h"
 #include "tests/support/schema.h"
 
 #include <catch2/catch.hpp>
@@ -47,7 +48,7 @@ TEST_CASE("a tee follows arms that come down from T to A pose and go up again", 
     const TempFolder folder;
     const auto files = write_motion(folder, {40, 25, 10, 0, 15});
     const Run r = run_toile({"drape", tee, "--avatar-sequence", folder / "arms.%04d.obj", "--edge-length", "30mm", "-o",
-                             folder / "tee.obj", "--report", folder / "tee.json"});
+                             folder / "tee.obj", "--fps", "12.5", "--report", folder / "tee.json"});
     INFO(r.err);
     REQUIRE(r.code == 0);
     CHECK_THAT(r.out, Contains("frames: 4 followed, 4 converged"));
@@ -67,6 +68,15 @@ TEST_CASE("a tee follows arms that come down from T to A pose and go up again", 
         CHECK(row["status"] == "converged");
         CHECK(row["behind"] == 0.0);
         CHECK(row["residual"] <= report["tolerance"]);
+    }
+    // Point caches have what the numbered files have.
+    const ReadFrames pc2 = read_pc2(folder / "tee.pc2", 12.5), mdd = read_mdd(folder / "tee.mdd");
+    CHECK(farthest(pc2.frames, mdd.frames) == 0);
+    REQUIRE(pc2.frames.size() == files.size());
+    for (std::size_t k = 0; k < files.size(); ++k) {
+        const Points x = read_garment(folder / ("tee.000" + std::to_string(3 + k) + ".obj")).x;
+        CHECK(farthest({pc2.frames[k]}, {rounded_to_float(x)}) == 0);
+        CHECK(mdd.times[k] == double(float(0.08 * double(k))));
     }
     // The sleeves came down with the arms and went up again.
     const auto hand_side = [&](int frame) {

@@ -152,6 +152,30 @@ Strings sources() {
     return found;
 }
 
+/// What stands between two marks, each time.
+Strings between(const std::string& text, const std::string& begin, const std::string& end) {
+    Strings found;
+    for (std::size_t at = text.find(begin); at != std::string::npos; at = text.find(begin, at)) {
+        at += begin.size();
+        const std::size_t to = text.find(end, at);
+        if (to == std::string::npos) break;
+        found.push_back(text.substr(at, to - at));
+        at = to + end.size();
+    }
+    return found;
+}
+
+/// Paths and pages that a page names and that do not exist.
+Strings missing_paths(const std::string& page) {
+    const fs::path root = TOILE_SOURCE_DIR;
+    Strings missing;
+    for (const std::string& path : between(page, "`", "`"))
+        if (path.find('/') != std::string::npos && !fs::exists(root / path)) missing.push_back(path);
+    for (const std::string& link : between(page, "](", ")"))
+        if (!fs::exists(root / "docs" / link)) missing.push_back(link);
+    return missing;
+}
+
 } // namespace
 
 TEST_CASE("the check of includes sees what it is meant to see") {
@@ -196,4 +220,12 @@ TEST_CASE("every source file carries its licence line") {
             file << " should begin with the line \"SPDX-License-Identifier: GPL-3.0-or-later\" as a comment");
         CHECK(has_licence(read(fs::path(TOILE_SOURCE_DIR) / file)));
     }
+}
+
+TEST_CASE("the page that says where each topic is names what exists") {
+    CHECK(missing_paths("`draping/drape.h` and `beyond` [x](methods.md)").empty());
+    CHECK(missing_paths("`draping/no.h`, [x](no.md)") == Strings{"draping/no.h", "no.md"});
+    const std::string page = read(fs::path(TOILE_SOURCE_DIR) / "docs/sources.md");
+    REQUIRE(between(page, "`", "`").size() > 80);
+    for (const std::string& missing : missing_paths(page)) FAIL_CHECK("docs/sources.md names " << missing);
 }

@@ -66,12 +66,14 @@ std::string method_sentence(const DrapeFacts& f, const Garment& g) {
                 f.motion ? "cloth moved" : "levels were brought to rest", to_string(f.method), limits.c_str());
 }
 
-std::string motion_sentence(const MotionReport& m) {
-    return text("the garment was let go where it was sewn, at rest without its weight, and moved in time for %.4g s: %d frames at "
+std::string motion_sentence(const DrapeFacts& f) {
+    const MotionReport& m = *f.motion;
+    return text("the garment was let go where %s, and moved in time for %.4g s: %d frames at "
                 "%.4g per second, steps of %.4g ms, %d from frame to frame; air takes %.3g of the speed per second; no point "
                 "moves faster than %.3g m/s, which held some back in %d of %d steps",
-                (m.frames - 1) / m.rate, m.frames, m.rate, 1e3 * m.time_step, m.steps_per_frame, m.air_damping, m.most_speed, m.slowed,
-                m.steps);
+                f.restarted ? "the earlier drape had ended" : "it was sewn, at rest without its weight",
+                (m.frames - 1) / m.rate, m.frames, m.rate, 1e3 * m.time_step, m.steps_per_frame, m.air_damping, m.most_speed,
+                m.slowed, m.steps);
 }
 
 std::string level_sentence(const DrapeFacts& f) {
@@ -172,7 +174,7 @@ std::vector<std::string> decisions(const DrapeFacts& f, const Garment& g, const 
                                  growth_sentence(f)};
     if (moves(f.method)) out.push_back(method_sentence(f, g));
     if (f.contact.response != ContactResponse::barrier) out.push_back(response_sentence(f));
-    if (f.motion) out.push_back(motion_sentence(*f.motion));
+    if (f.motion) out.push_back(motion_sentence(f));
     if (f.untangled > 0)
         out.push_back(text("where cloth crossed itself after sewing or on a finer mesh, it was taken apart before contact "
                            "took over: at most %d crossings on a level", f.untangled));

@@ -223,6 +223,7 @@ DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabri
         prove(run);
         decide(run);
     }
+    if (is_animated(options) && run.result.frames.empty()) run.result.frames.push_back(run.x); // it did not come to move
     run.result.garment = std::move(run.garment);
     run.result.state.positions = std::move(run.x);
     return std::move(run.result);

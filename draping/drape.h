@@ -116,7 +116,7 @@ struct DrapeResult {
     BarrierReport barrier;
     ContactReport contact;
     std::optional<MotionReport> motion;
-    std::vector<Points> frames; ///< of a motion: the nodes at equal times, the last one as in `state`
+    std::vector<Points> frames; ///< of an animation: the nodes at equal times, the last as in `state`
     std::vector<LevelReport> levels;
     std::vector<StageSeconds> seconds;
     std::vector<Landmark> landmarks; ///< of every labelled edge, by label

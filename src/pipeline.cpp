@@ -188,11 +188,11 @@ void write_dressed(const DrapeJob& job, const DrapeOutcome& outcome) {
     const Garment& garment = outcome.result.garment;
     const Points& x = outcome.result.state.positions;
     const std::vector<int> numbers = frame_numbers(job.avatar_sequence);
-    const PointFrames motion{outcome.result.frames, job.drape.animation.rate};
-    const bool moved = !motion.frames.empty();
-    write_garments(job, garment, x, outcome.body, numbers.empty() ? 0 : numbers[0], moved ? &motion : nullptr);
-    if (moved)
-        for (const std::string& path : cached(job)) write_caches(path, motion, job.write);
+    const bool animated = is_animated(job.drape);
+    const std::vector<Points> dressed{x}; // the first frame of a sequence, and all there is if it does not follow
+    const PointFrames motion{animated ? outcome.result.frames : dressed, animated ? job.drape.animation.rate : job.sequence_rate};
+    write_garments(job, garment, x, outcome.body, numbers.empty() ? 0 : numbers[0], animated ? &motion : nullptr);
+    for (const std::string& path : cached(job)) write_caches(path, motion, job.write);
     if (!job.preview.empty()) write_preview(job.preview, garment, x, outcome.body);
 }
 

@@ -226,7 +226,15 @@ TEST_CASE("an animation that is stopped or blows up writes the frames it has and
     const auto short_report = nlohmann::json::parse(stopped.out);
     CHECK(short_report["status"] == "limit");
     CHECK_THAT(short_report["where"].get<std::string>(), Contains("time limit"));
+    CHECK(farthest({read_pc2(folder / "b.pc2", 24).frames.back()}, {rounded_to_float(read_garment(folder / "b.obj").x)}) == 0);
     CHECK(Schema("report.schema.json").complaints(stopped.out) == "");
+
+    // Not even sewn.
+    CHECK(run_toile({"drape", skirt, "--edge-length", "40mm", "--animate", "1s", "--max-seconds", "1ms", "-o", folder / "c.obj",
+                     "-o", folder / "c.glb", "--quiet"})
+              .code == 3);
+    CHECK(read_pc2(folder / "c.pc2", 24).frames.size() == 1);
+    CHECK(farthest(read_mdd(folder / "c.mdd").frames, {rounded_to_float(read_garment(folder / "c.obj").x)}) == 0);
 }
 
 TEST_CASE("animations that cannot be are refused in a sentence", "[animate]") {

@@ -169,7 +169,7 @@ void step() {
     for (double edge : {0.025, 0.0162, 0.0080}) {
         const HungCloth s = sheet(edge);
         Motion motion = start_motion(make_nonconforming_cloth(s.garment, {sheet_fabric(0.15, 1e-5)}),
-                                     s.garment, s.start, {}, s.pins);
+                                     s.garment, s.start, {{}, {}, s.pins});
         MotionOptions options;
         options.time_step = 5e-3;
         int iterations = 0, factorisations = 0, failed = 0;

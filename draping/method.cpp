@@ -9,6 +9,7 @@
 #include "draping/solve/implicit.h"
 #include "draping/solve/inextensible.h"
 #include "draping/solve/limited.h"
+#include "draping/solve/nonconforming.h"
 #include "draping/solve/projective.h"
 #include "draping/solve/xpbd.h"
 
@@ -80,12 +81,19 @@ std::unique_ptr<Stepper> inextensible_stepper(const Garment& garment, const std:
     return std::make_unique<InextensibleStepper>(std::move(problem), tension, response, step);
 }
 
+std::unique_ptr<Stepper> nonconforming_stepper(const Garment& garment, const std::vector<Fabric>& fabrics,
+                                               const std::vector<char>& pinned, Response& response, StepOptions step,
+                                               const MethodOptions& options) {
+    if (options.time_step > 0) step.time_step = options.time_step;
+    return std::make_unique<NonconformingStepper>(garment, fabrics, node_masses(garment, fabrics), pinned, response, step);
+}
+
 } // namespace
 
 const std::vector<Method>& all_methods() {
     static const std::vector<Method> all{Method::equilibrium, Method::springs_explicit, Method::springs_implicit,
                                          Method::springs_biphasic, Method::springs_limited, Method::triangles,
-                                         Method::projective, Method::xpbd, Method::inextensible};
+                                         Method::projective, Method::xpbd, Method::inextensible, Method::nonconforming};
     return all;
 }
 
@@ -100,6 +108,7 @@ const char* to_string(Method m) {
     case Method::projective: return "projective";
     case Method::xpbd: return "xpbd";
     case Method::inextensible: return "inextensible";
+    case Method::nonconforming: return "nonconforming";
     }
     return "equilibrium";
 }
@@ -126,6 +135,7 @@ std::unique_ptr<Stepper> make_stepper(Method method, const Garment& garment, con
     case Method::xpbd: return triangle_stepper(method, garment, fabrics, pinned, response, step, options);
     case Method::projective: return projective_stepper(garment, fabrics, pinned, response, step, options);
     case Method::inextensible: return inextensible_stepper(garment, fabrics, pinned, response, step, options);
+    case Method::nonconforming: return nonconforming_stepper(garment, fabrics, pinned, response, step, options);
     case Method::equilibrium: break;
     }
     throw std::invalid_argument(std::string("the method ") + to_string(method) + " has no steps in time");

@@ -20,7 +20,7 @@ class Response;
 struct StepOptions;
 
 enum class Method { equilibrium, springs_explicit, springs_implicit, springs_biphasic, springs_limited,
-                    triangles, projective, xpbd, inextensible };
+                    triangles, projective, xpbd, inextensible, nonconforming };
 
 const std::vector<Method>& all_methods();
 const char* to_string(Method method); ///< as above, with hyphens: "springs-explicit"
@@ -44,8 +44,8 @@ struct MethodOptions {
     bool projected = true;        ///< triangles: a positive semidefinite stand-in for the Hessian
 };
 
-/// The cloth of a garment as one method that moves has it, with `pinned` (per node), without loads. Keeps a reference to the
-/// response. `fabrics` has one entry per panel. Throws std::invalid_argument for a method that does not move.
+/// The cloth of a garment as one method that moves has it, with `pinned` (per node), without loads. Keeps references to the
+/// garment and the response. `fabrics` has one entry per panel. Throws std::invalid_argument for a method that does not move.
 std::unique_ptr<Stepper> make_stepper(Method method, const Garment& garment, const std::vector<Fabric>& fabrics,
                                       const std::vector<char>& pinned, Response& response, const StepOptions& step,
                                       const MethodOptions& options);

@@ -1,26 +1,37 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/nonconforming/midpoints.h"
 
-#include <Eigen/LU>
-
 #include <stdexcept>
 
 namespace toile {
 
 namespace {
 
-Eigen::SparseMatrix<double, Eigen::RowMajor> ghost_map(const Garment& garment) {
-    std::vector<int> corners(garment.node_count, 0);
+/// kg per triangle.
+std::vector<double> triangle_masses(const Garment& garment, const std::vector<Fabric>& fabrics) {
+    std::vector<double> mass;
+    for (std::size_t t = 0; t < garment.triangles.size(); ++t) {
+        const Fabric& fabric = fabrics[garment.panel_of_triangle[t]];
+        if (!(fabric.density > 0))
+            throw std::invalid_argument("fabric \"" + fabric.name + "\": density must be positive");
+        mass.push_back(fabric.density * rest_area(garment.rest.edges[t]));
+    }
+    return mass;
+}
+
+Eigen::SparseMatrix<double, Eigen::RowMajor> ghost_map(const Garment& garment,
+                                                       const std::vector<double>& mass) {
+    std::vector<double> around(garment.node_count, 0);
     for (int t = 0; t < int(garment.triangles.size()); ++t)
         for (int node : garment.nodes(t))
-            ++corners[node];
+            around[node] += mass[t];
     std::vector<Eigen::Triplet<double>> entries;
     for (int t = 0; t < int(garment.triangles.size()); ++t) {
         const Triangle nodes = garment.nodes(t);
         for (int i = 0; i < 3; ++i)
             for (int k = 0; k < 3; ++k)
                 entries.emplace_back(nodes[i], garment.edges.of_triangle[t][k],
-                                     (k == i ? -1.0 : 1.0) / corners[nodes[i]]);
+                                     (k == i ? -1.0 : 1.0) * mass[t] / around[nodes[i]]);
     }
     Eigen::SparseMatrix<double, Eigen::RowMajor> ghost(garment.node_count, garment.edges.size());
     ghost.setFromTriplets(entries.begin(), entries.end());
@@ -31,16 +42,12 @@ Eigen::SparseMatrix<double, Eigen::RowMajor> ghost_map(const Garment& garment) {
 
 Midpoints make_midpoints(const Garment& garment, const std::vector<Fabric>& fabrics) {
     Midpoints m;
+    const std::vector<double> mass = triangle_masses(garment, fabrics);
     m.mass.assign(garment.edges.size(), 0);
-    for (int t = 0; t < int(garment.triangles.size()); ++t) {
-        const Fabric& fabric = fabrics[garment.panel_of_triangle[t]];
-        if (!(fabric.density > 0))
-            throw std::invalid_argument("fabric \"" + fabric.name + "\": density must be positive");
-        const double mass = fabric.density * rest_area(garment.rest.edges[t]);
+    for (std::size_t t = 0; t < mass.size(); ++t)
         for (int e : garment.edges.of_triangle[t])
-            m.mass[e] += mass / 3;
-    }
-    m.ghost = ghost_map(garment);
+            m.mass[e] += mass[t] / 3;
+    m.ghost = ghost_map(garment, mass);
     return m;
 }
 

@@ -17,9 +17,10 @@ namespace toile {
 struct Midpoints {
     std::vector<double>
         mass; ///< kg, a third of every triangle at the edge; on the border of one, half as much as inside
-    /// Nodes x midpoints: a ghost node is the mean of the corners that the triangles around it have there, a
-    /// corner of a triangle being the sum of the midpoints beside it less the one opposite. Rows sum to 1;
-    /// that of a node without triangles is empty.
+    /// Nodes x midpoints: a ghost node is the mean, weighted by mass, of the corners that the triangles around it
+    /// have there, a corner of a triangle being the sum of the midpoints beside it less the one opposite. Rows sum to
+    /// 1; that of a node without triangles is empty. By the weights, ghost nodes that have a third of the mass of
+    /// every triangle around them have the momentum of the midpoints, whatever these do.
     Eigen::SparseMatrix<double, Eigen::RowMajor> ghost;
 
     int count() const { return int(mass.size()); }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/nonconforming/motion.h"
 
-#include <Eigen/SparseCholesky>
-
+#include <algorithm>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -30,14 +29,14 @@ Formula formula_of(const Motion& m, double h) {
     return f;
 }
 
-/// Inertia as a spring to where the midpoints would go without force; damping as one to where they come from.
-void add_inertia(const std::vector<double>& mass, const Formula& f, double damping,
-                 IsometricProblem& problem) {
-    const double inertia = f.rate * f.rate, drag = damping * f.rate;
-    for (std::size_t i = 0; i < mass.size(); ++i) {
-        problem.stiffness.coeffRef(i, i) += mass[i] * (inertia + drag);
-        problem.load[i] += mass[i] * ((inertia + drag) * f.known[i] + f.rate * f.known_velocity[i]);
+/// What of the misfit of every bar is more than a step may draw in, m.
+Eigen::VectorXd to_be_left(const Motion& m, double drawn_in) {
+    Eigen::VectorXd c = misfit(m.cloth.bars, m.x);
+    for (std::size_t i = 0; i < m.cloth.bars.size(); ++i) {
+        const double most = drawn_in * m.cloth.bars[i].length;
+        c[i] -= std::clamp(c[i], -most, most);
     }
+    return c;
 }
 
 void need_nodes(const NonconformingCloth& cloth, const Points& given, const std::string& what) {
@@ -51,72 +50,57 @@ double mean_weight(const std::vector<double>& mass) {
     return 9.81 * std::accumulate(mass.begin(), mass.end(), 0.0) / double(mass.size());
 }
 
-/// Velocities of midpoints by impulses on ghost nodes that change the velocities of these by `change`.
-Points velocity_change(const Motion& motion, const Points& change) {
-    const auto& ghost = motion.cloth.midpoints.ghost;
-    Eigen::VectorXd mobility(ghost.cols());
-    for (int e = 0; e < int(mobility.size()); ++e)
-        mobility[e] = motion.problem.held[e] ? 0 : 1 / motion.cloth.midpoints.mass[e];
-    const Eigen::SparseMatrix<double> of_ghosts = ghost * mobility.asDiagonal() * ghost.transpose();
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
-    solver.setShift(immovable * of_ghosts.diagonal().mean());
-    solver.compute(of_ghosts);
-    using Coordinates = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-    Coordinates wanted(change.size(), 3);
-    for (std::size_t i = 0; i < change.size(); ++i)
-        wanted.row(i) = change[i];
-    Coordinates impulse = Coordinates::Zero(change.size(), 3);
-    for (int refinement = 0; refinement < 3; ++refinement) {
-        const Coordinates left = wanted - of_ghosts * impulse;
-        impulse += solver.solve(left);
-    }
-    const Coordinates velocity = mobility.asDiagonal() * (ghost.transpose() * impulse);
-    Points result(motion.x.size());
-    for (std::size_t e = 0; e < result.size(); ++e)
-        result[e] = velocity.row(e);
-    return result;
-}
-
 } // namespace
 
-Motion start_motion(NonconformingCloth cloth, const Garment& garment, const Points& nodes,
-                    const std::vector<char>& held, const std::vector<GhostSpring>& springs) {
+Motion place_motion(NonconformingCloth cloth, const Garment& garment, const Points& nodes, const MotionHolds& holds) {
     need_nodes(cloth, nodes, "start positions");
     Motion m;
     m.cloth = std::move(cloth);
-    m.problem = problem_of(m.cloth, Vec3::Zero(), {}, springs);
-    if (!held.empty()) m.problem.held = held;
-    m.saddle = std::make_unique<Saddle>(m.problem.stiffness, m.problem.bars, m.problem.held);
-    m.x = midpoints_of(garment, nodes);
-    m.isometric = make_isometric(*m.saddle, m.problem, m.x);
+    m.problem = problem_of(m.cloth, Vec3::Zero(), {}, holds.springs);
+    if (!holds.midpoints.empty()) m.problem.held = holds.midpoints;
+    std::vector<HeldPlace> places;
+    for (int node : holds.nodes) {
+        places.emplace_back();
+        for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator e(m.cloth.midpoints.ghost, node); e; ++e)
+            places.back().emplace_back(int(e.col()), e.value());
+    }
+    m.solver = std::make_unique<StepSolver>(m.problem, places);
+    m.impulses = std::make_unique<GhostImpulses>(m.cloth.midpoints, m.problem.held);
+    m.x = m.candidate = midpoints_of(garment, nodes);
     m.velocity.assign(m.x.size(), Vec3::Zero());
-    m.candidate = m.x;
     m.candidate_velocity = m.velocity;
     return m;
 }
 
-MotionStep try_step(Motion& motion, const Vec3& gravity, const Points& ghost_forces,
-                    const MotionOptions& options) {
-    if (!ghost_forces.empty()) need_nodes(motion.cloth, ghost_forces, "forces");
+Motion start_motion(NonconformingCloth cloth, const Garment& garment, const Points& nodes, const MotionHolds& holds) {
+    Motion m = place_motion(std::move(cloth), garment, nodes, holds);
+    Saddle saddle(m.problem.stiffness, m.problem.bars, m.problem.held);
+    m.isometric = make_isometric(saddle, m.problem, m.x);
+    m.candidate = m.x;
+    return m;
+}
+
+MotionStep try_step(Motion& motion, const Vec3& gravity, const GhostLoads& loads, const MotionOptions& options) {
+    if (!loads.forces.empty()) need_nodes(motion.cloth, loads.forces, "forces");
     const double h = options.time_step;
     const Formula f = formula_of(motion, h);
     const std::vector<double>& mass = motion.cloth.midpoints.mass;
-    IsometricProblem problem = motion.problem;
-    const Points pushed = from_ghost_nodes(motion.cloth.midpoints, ghost_forces);
-    for (std::size_t i = 0; i < mass.size(); ++i)
-        problem.load[i] += mass[i] * gravity + pushed[i];
-    add_inertia(mass, f, options.damping, problem);
-
+    // Inertia is a spring to where the midpoints would go without force, damping one to where they come from.
+    const double inertia = f.rate * (f.rate + options.damping);
+    StepProblem problem{motion.problem, motion.cloth.midpoints, from_ghost_nodes(motion.cloth.midpoints, loads.forces),
+                        {}, loads.stiffness, motion.x, to_be_left(motion, options.drawn_in)};
+    for (std::size_t i = 0; i < mass.size(); ++i) {
+        problem.inertia.push_back(inertia * mass[i]);
+        problem.load[i] += motion.problem.load[i] + mass[i] * (gravity + inertia * f.known[i] + f.rate * f.known_velocity[i]);
+    }
     motion.candidate = motion.x;
     for (std::size_t i = 0; i < mass.size(); ++i)
-        if (!problem.held[i]) motion.candidate[i] += h * motion.velocity[i];
-    IsometricOptions newton;
+        if (!motion.problem.held[i]) motion.candidate[i] += h * motion.velocity[i];
+    StepSolverOptions newton;
     newton.tolerance = options.tolerance * mean_weight(mass);
     newton.strain = options.strain;
     newton.max_iterations = options.max_iterations;
-    const IsometricResult r =
-        settle_isometric(*motion.saddle, problem, motion.candidate, newton, motion.tension);
-    motion.tension = r.tension;
+    const IsometricResult r = motion.solver->step(problem, motion.candidate, motion.tension, newton);
 
     MotionStep step{r.end, r.iterations, r.factorisations,
                     ghost_nodes(motion.cloth.midpoints, motion.candidate)};
@@ -148,13 +132,34 @@ void finish_step(Motion& motion, const MotionOptions& options, const Points& gho
         most = std::max(most, change[i].norm());
     }
     if (most > 0) {
-        const Points by = velocity_change(motion, change);
+        const Points by = motion.impulses->velocities(change);
         for (std::size_t i = 0; i < by.size(); ++i) {
             motion.candidate[i] += h * by[i];
             motion.candidate_velocity[i] += by[i];
         }
     }
     finish_step(motion, options);
+    if (most > 0) motion.x_before.clear();
+}
+
+Points unanswered(Motion& motion, const Points& ghost_forces) {
+    need_nodes(motion.cloth, ghost_forces, "forces");
+    Points force = from_ghost_nodes(motion.cloth.midpoints, ghost_forces);
+    Eigen::VectorXd pulls = Eigen::VectorXd::Zero(3 * Eigen::Index(force.size()));
+    if (motion.tension.size() > 0) pulls = motion.solver->pulls(motion.x, motion.tension);
+    using Coordinates = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+    const Coordinates bent = motion.problem.stiffness * Eigen::Map<const Coordinates>(motion.x[0].data(), force.size(), 3);
+    for (std::size_t e = 0; e < force.size(); ++e)
+        force[e] += motion.problem.load[e] - pulls.segment<3>(3 * e) - bent.row(e).transpose();
+    return force;
+}
+
+void replace(Motion& motion, const Garment& garment, const Points& nodes, const Points& velocity) {
+    need_nodes(motion.cloth, nodes, "positions");
+    need_nodes(motion.cloth, velocity, "velocities");
+    motion.x = motion.candidate = midpoints_of(garment, nodes);
+    motion.velocity = motion.candidate_velocity = midpoints_of(garment, velocity);
+    motion.x_before.clear();
 }
 
 double kinetic_energy(const Motion& motion) {

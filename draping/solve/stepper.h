@@ -8,6 +8,7 @@
 #include "draping/energy/loads.h"
 
 #include <functional>
+#include <optional>
 #include <string>
 
 namespace toile {
@@ -55,6 +56,8 @@ public:
     virtual const std::vector<double>& node_mass() const = 0; ///< kg
     virtual StepOptions& options() = 0;
     virtual int factorisations() const { return 0; } ///< so far
+    /// Largest strain of triangles that the method has in the place of those between nodes.
+    virtual std::optional<double> kept_strain() const { return {}; }
 };
 
 double kinetic_energy(const std::vector<double>& node_mass, const Moving& cloth); ///< J

@@ -58,7 +58,7 @@ Motion swinging_strip(bool pinned) {
     for (int i = 0; pinned && i < garment.node_count; ++i)
         if (mesh.points[i].x() < 1e-9) pins.push_back({i, flat_points(mesh)[i], 100});
     return start_motion(make_nonconforming_cloth(garment, {sheet_fabric(0.15, 1e-4)}), garment,
-                        flat_points(mesh), {}, pins);
+                        flat_points(mesh), {{}, {}, pins});
 }
 
 Points after_swing(double seconds, int steps) {
@@ -223,7 +223,7 @@ TEST_CASE("a pendulum loses energy as the amplification of BDF2 says", "[validat
     };
     for (double step : {0.2, 0.3}) { // times 1 / omega
         motion =
-            start_motion(make_nonconforming_cloth(garment, {sheet_fabric(0.15, 1)}), garment, nodes, held);
+            start_motion(make_nonconforming_cloth(garment, {sheet_fabric(0.15, 1)}), garment, nodes, {held, {}, {}});
         MotionOptions options;
         options.time_step = step / omega;
         const auto swing = [&](int steps) {

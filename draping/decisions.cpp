@@ -62,6 +62,10 @@ std::string method_sentence(const DrapeFacts& f, const Garment& g) {
     if (f.method == Method::inextensible)
         limits = text("%d of %d edges lie along warp or weft and were brought back to their lengths in every step, before contact",
                       int(yarn_edges(g).size()), g.edges.size());
+    if (f.kept_strain)
+        limits = text("triangles keep their shape on the midpoints of their edges, where the largest strain at the end is %.2g %%; "
+                      "strains elsewhere in this report are of the mesh through the means of their corners",
+                      100 * *f.kept_strain);
     return text("the %s by the method \"%s\" instead of equilibrium, which sewed and placed the cloth; %s",
                 f.motion ? "cloth moved" : "levels were brought to rest", to_string(f.method), limits.c_str());
 }

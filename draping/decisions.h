@@ -7,6 +7,7 @@
 #include "draping/drape.h"
 #include "draping/measure.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ TouchFacts count_touching(const Contact& contact, const Points& x);
 struct DrapeFacts {
     TouchFacts touch;
     Method method = Method::equilibrium;
+    std::optional<double> kept_strain; ///< as the method's stepper tells it
     ContactReport contact;
     std::optional<MotionReport> motion; ///< of an animation
     FrictionCoefficients friction;

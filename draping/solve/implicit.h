@@ -2,11 +2,10 @@
 #pragma once
 
 // Implicit Euler with velocities, one Newton step each (Baraff, Witkin: Large Steps in Cloth Simulation, 1998), on any
-// problem without contact of its own. The forces of contact of the last step stand in the solve, and what the body held
-// is held in it by the method of multipliers (Hestenes 1969), so that what leans on the body is at rest when its forces
-// are in balance, however stiff it is and however long the step.
+// problem without contact of its own. The forces of contact of the last step stand in the solve, and what the body held is held in it.
 
 #include "draping/algebra/cholesky.h"
+#include "draping/solve/held_touches.h"
 #include "draping/solve/problem_stepper.h"
 
 namespace toile {
@@ -23,6 +22,8 @@ protected:
     virtual void constrain(const Moving& cloth, Points& v) { (void)cloth, (void)v; }
 
 private:
+    Points candidate(Moving& cloth, HeldTouches& touches);
+
     Cholesky factor_;
     bool analysed_ = false; ///< the factor has the pattern of the problem's matrix
     int factorisations_ = 0;

@@ -9,7 +9,9 @@ namespace toile {
 namespace {
 
 constexpr double gravity = 9.81; // m/s2, by which forces are measured
-constexpr double taken_up = 0.4; // of what contact does in a step: a ghost node is up to some three times as mobile as its mass says
+constexpr double hold_share = 10;  // of the nodes' inertia, with which touches hold
+constexpr double taken_up = 0.4;   // of what cloth on cloth does in a step: a ghost node is more mobile than its mass says
+constexpr int most_rounds = 2;     // solves of a step, until every touch that slides or pulls is known
 constexpr double least_mass = 0.1; // of the mean, that counts as a midpoint's weight
 
 std::vector<int> listed(const std::vector<char>& pinned) {
@@ -29,7 +31,6 @@ NonconformingStepper::NonconformingStepper(const Garment& garment, const std::ve
                                               Points(garment.node_count, Vec3::Zero()), {{}, listed(pinned), {}})) {
     for (std::size_t i = 0; i < node_mass_.size(); ++i)
         if (!pinned[i] && node_mass_[i] > 0) inverse_mass_[i] = 1 / node_mass_[i];
-    weight_ = gravity * std::accumulate(node_mass_.begin(), node_mass_.end(), 0.0);
     // One iteration a step; what it leaves of lengths, and of balance at rest, the next takes up.
     motion_options_.max_iterations = 1;
     motion_options_.tolerance = 1e-5;
@@ -48,40 +49,45 @@ Points NonconformingStepper::load_forces(const Points& x) const {
     return force;
 }
 
-const BlockMatrix* NonconformingStepper::load_stiffness(const Points& x) {
-    if (loads_.stitches.empty() && loads_.hooks.empty() && loads_.elastics.empty()) return nullptr;
+void NonconformingStepper::find_load_stiffness(const Points& x) {
     if (stiffness_.block_rows() == 0 || loads_ != coupled_) {
         std::vector<std::pair<int, int>> pairs;
+        for (const auto& [a, b] : garment_.edges.ends) pairs.emplace_back(a, b);
         couplings(loads_, pairs);
         stiffness_ = BlockMatrix(int(x.size()), pairs);
         coupled_ = loads_;
     }
     stiffness_.set_zero();
     add_hessian(loads_, x, stiffness_);
-    return &stiffness_;
 }
 
-/// Velocities of the nodes under loads and these forces of contact (N).
-Points NonconformingStepper::candidate(const Moving& cloth, const Points& contact) {
-    motion_options_.time_step = options_.time_step;
+/// Velocities of the nodes under loads and what contact did in the last step; touches that pull are let go on the way.
+Points NonconformingStepper::candidate(const Moving& cloth, HeldTouches& touches) {
+    const std::size_t n = cloth.x.size();
+    const double dt = options_.time_step;
+    motion_options_.time_step = dt;
     motion_options_.damping = options_.damping;
     motion_options_.drawn_in = drawn_in;
-    GhostLoads acting{load_forces(cloth.x), load_stiffness(cloth.x)};
-    for (std::size_t i = 0; i < contact.size(); ++i) acting.forces[i] += contact[i];
-    Points v = try_step(motion_, Vec3::Zero(), acting, motion_options_).ghost_velocity;
-    for (std::size_t i = 0; i < v.size(); ++i)
-        if (inverse_mass_[i] == 0) v[i].setZero();
-    slow(v, options_.time_step, options_.max_motion);
-    return v;
-}
-
-/// Takes up part of what contact has done: impacts of a single step are no lasting force, and none bears more than all the cloth.
-void NonconformingStepper::remember(const Points& done, Points& force) const {
-    for (std::size_t i = 0; i < force.size(); ++i) {
-        const double most = std::min(std::max(2 * force[i].norm(), gravity * node_mass_[i]), weight_);
-        force[i] += taken_up * (done[i] - force[i]);
-        if (const double now = force[i].norm(); now > most) force[i] *= most / now;
+    find_load_stiffness(cloth.x);
+    std::vector<double> own(n);
+    for (std::size_t i = 0; i < n; ++i) own[i] = (1 + options_.damping * dt) / (dt * dt) * node_mass_[i];
+    touches.find_holds(own, hold_share);
+    Eigen::VectorXd momentum(3 * n);
+    const Points loads = load_forces(cloth.x);
+    for (std::size_t i = 0; i < n; ++i) momentum.segment<3>(3 * i) = dt * (loads[i] + cloth.other_force[i]);
+    Points v;
+    for (int round = 0; round < most_rounds; ++round) {
+        BlockMatrix held = stiffness_;
+        Eigen::VectorXd b = momentum;
+        touches.add(held, b);
+        GhostLoads acting{Points(n), &held};
+        flat(acting.forces) = b / dt;
+        v = try_step(motion_, Vec3::Zero(), acting, motion_options_).ghost_velocity;
+        for (std::size_t i = 0; i < n; ++i)
+            if (inverse_mass_[i] == 0) v[i].setZero();
+        if (!touches.let_go(v, round + 1 == most_rounds)) break;
     }
+    return v;
 }
 
 ResponseDone NonconformingStepper::step(Moving& cloth, const Points& body_end) {
@@ -89,26 +95,25 @@ ResponseDone NonconformingStepper::step(Moving& cloth, const Points& body_end) {
     const double dt = options_.time_step;
     cloth.velocity.resize(n, Vec3::Zero());
     cloth.other_force.resize(n, Vec3::Zero());
-    cloth.touches.clear();
     start_at(cloth);
+    HeldTouches touches(cloth, response_, inverse_mass_, body_end, dt);
     const ResponseStep seen{dt, cloth.x, cloth.velocity, inverse_mass_, body_end};
     ResponseDone done;
-    Points contact(n, Vec3::Zero()), v = cloth.velocity;
-    const auto answer = [&] {
-        const Points before = v;
-        done = respond(cloth, response_, seen, v);
-        for (std::size_t i = 0; i < n; ++i) contact[i] = node_mass_[i] / dt * (v[i] - before[i]);
-    };
+    Points v = cloth.velocity;
     if (response_.known_at_start()) {
-        answer();
-        cloth.other_force = contact;
-        v = candidate(cloth, contact);
+        done = respond(cloth, response_, seen, v);
+        touches.take_up(done, v);
+        v = candidate(cloth, touches);
+        slow(v, dt, options_.max_motion);
     } else {
-        v = candidate(cloth, cloth.other_force);
+        v = candidate(cloth, touches);
         for (std::size_t i = 0; i < n; ++i) // what the response is to do anew
             v[i] -= dt * inverse_mass_[i] * cloth.other_force[i];
-        answer();
-        remember(contact, cloth.other_force);
+        slow(v, dt, options_.max_motion);
+        done = respond(cloth, response_, seen, v);
+        const Points last = cloth.other_force;
+        touches.take_up(done, v);
+        for (std::size_t i = 0; i < n; ++i) cloth.other_force[i] = last[i] + taken_up * (cloth.other_force[i] - last[i]);
     }
     finish_step(motion_, motion_options_, v);
     cloth.x = left_at_ = ghost_nodes(motion_.cloth.midpoints, motion_.x);

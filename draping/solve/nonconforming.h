@@ -6,7 +6,7 @@
 // steps, so that at rest contact has nothing left to correct and the lengths stay exact.
 
 #include "draping/nonconforming/motion.h"
-#include "draping/solve/stepper.h"
+#include "draping/solve/held_touches.h"
 
 namespace toile {
 
@@ -35,20 +35,18 @@ public:
 private:
     void start_at(const Moving& cloth);
     Points load_forces(const Points& x) const;
-    const BlockMatrix* load_stiffness(const Points& x);
-    Points candidate(const Moving& cloth, const Points& contact);
-    void remember(const Points& contact, Points& force) const;
+    void find_load_stiffness(const Points& x);
+    Points candidate(const Moving& cloth, HeldTouches& touches);
 
     const Garment& garment_;
     std::vector<double> node_mass_, inverse_mass_; ///< 1/kg, 0 for what is pinned
-    double weight_ = 0;                            ///< N, of all
     Response& response_;
     StepOptions options_;
     MotionOptions motion_options_;
     Motion motion_;
     Points left_at_; ///< nodes after the last step
     Loads loads_, coupled_;
-    BlockMatrix stiffness_; ///< of `coupled_`
+    BlockMatrix stiffness_; ///< over nodes, with the pattern of `coupled_` and of triangles
     int worst_ = 0;
 };
 

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What cloth on edge midpoints costs and how well it bends, behind docs/nonconforming.md.
-// bench_nonconforming [test ...] with tests out of: cantilever rest step. Default: all.
+// bench_nonconforming [test ...] with tests out of: cantilever rest step drape. Default: all.
 
 #include "bench/asked.h"
+#include "draping/cloth.h"
+#include "draping/method.h"
 #include "draping/nonconforming/motion.h"
+#include "draping/solve/stepper.h"
 
 #include "tests/support/hanging_sheet.h"
 #include "tests/support/midpoint_strip.h"
@@ -165,28 +168,61 @@ void rest() {
     }
 }
 
+/// Steps to the last digits, and steps of one iteration as the method has them.
 void step() {
-    for (double edge : {0.025, 0.0162, 0.0080}) {
-        const HungCloth s = sheet(edge);
-        Motion motion = start_motion(make_nonconforming_cloth(s.garment, {sheet_fabric(0.15, 1e-5)}),
-                                     s.garment, s.start, {{}, {}, s.pins});
-        MotionOptions options;
-        options.time_step = 5e-3;
-        int iterations = 0, factorisations = 0, failed = 0;
-        const double start = cpu_seconds();
-        const int steps = edge > 0.01 ? 20 : 4;
-        for (int i = 0; i < steps; ++i) {
-            const MotionStep done = try_step(motion, gravity, {}, options);
-            iterations += done.iterations;
-            factorisations += done.factorisations;
-            failed += done.end != IsometricEnd::settled;
-            finish_step(motion, options);
+    for (double edge : {0.025, 0.0162, 0.0080})
+        for (const bool whole : {true, false}) {
+            const HungCloth s = sheet(edge);
+            MotionHolds holds;
+            for (const GhostSpring& pin : s.pins) holds.nodes.push_back(pin.node);
+            const NonconformingCloth cloth = make_nonconforming_cloth(s.garment, {sheet_fabric(0.15, 1e-5)});
+            Motion motion = whole && edge > 0.01 ? start_motion(cloth, s.garment, s.start, holds)
+                                                 : place_motion(cloth, s.garment, s.start, holds);
+            MotionOptions options;
+            options.time_step = whole ? 5e-3 : 2e-3;
+            if (!whole) {
+                options.max_iterations = 1;
+                options.drawn_in = 1e-3;
+                options.damping = 10;
+            }
+            int iterations = 0, factorisations = 0, failed = 0;
+            const double start = cpu_seconds();
+            const int steps = whole ? 5 : 20;
+            for (int i = 0; i < steps; ++i) {
+                const MotionStep done = try_step(motion, gravity, {}, options);
+                iterations += done.iterations;
+                factorisations += done.factorisations;
+                failed += done.end != IsometricEnd::settled;
+                finish_step(motion, options);
+            }
+            std::printf("%d nodes: %.1f ms per step of %.0f ms, %.1f iterations, %.1f of conjugate gradients in each%s\n",
+                        s.garment.node_count, 1e3 * seconds_since(start) / steps, 1e3 * options.time_step,
+                        double(iterations) / steps, double(motion.solver->linear_iterations()) / std::max(1, factorisations),
+                        whole && failed ? ", NOT ALL SETTLED" : "");
+            std::fflush(stdout);
         }
-        std::printf(
-            "%d nodes: %.0f ms per step of %.0f ms, %.1f iterations, %.1f factorisations, strain %.1e%s\n",
-            s.garment.node_count, 1e3 * seconds_since(start) / steps, 1e3 * options.time_step,
-            double(iterations) / steps, double(factorisations) / steps,
-            largest_triangle_strain(s.garment, motion.x), failed ? ", NOT ALL SETTLED" : "");
+}
+
+/// The hung sheet from its rough start to rest by the method.
+void drape() {
+    for (double edge : {0.025, 0.0162}) {
+        const HungCloth s = sheet(edge);
+        std::vector<char> pinned(s.garment.node_count, 0);
+        for (const GhostSpring& pin : s.pins) pinned[pin.node] = 1;
+        const auto response = make_response(ContactResponse::impulse, contact_cloth(s.garment), {}, {});
+        const std::vector<Fabric> fabrics{sheet_fabric(0.15, 1e-5)};
+        const auto stepper = make_stepper(Method::nonconforming, s.garment, fabrics, pinned, *response, {2e-3, 10, 5e-3}, {});
+        stepper->loads().gravity = 9.81;
+        Moving cloth{s.start};
+        RestOptions rest;
+        rest.max_steps = 3000;
+        const double start = cpu_seconds();
+        const RestResult r = come_to_rest(*stepper, cloth, {}, rest);
+        double drop = 0;
+        for (const Vec3& p : cloth.x) drop = std::max(drop, -p.y());
+        std::printf("%d nodes: %s after %d steps, %.2f s, contact with itself %.2f s of it by the clock; drop %.1f mm, strain %.1e\n",
+                    s.garment.node_count, r.rested ? "at rest" : "NOT AT REST", r.steps, seconds_since(start),
+                    cloth.contact.seconds(), 1e3 * drop, *stepper->kept_strain());
         std::fflush(stdout);
     }
 }
@@ -197,4 +233,5 @@ int main(int count, char** words) {
     if (asked(count, words, "cantilever")) cantilever();
     if (asked(count, words, "rest")) rest();
     if (asked(count, words, "step")) step();
+    if (asked(count, words, "drape")) drape();
 }

@@ -12,6 +12,9 @@ namespace {
 
 constexpr double immovable = 1e-10; // share of the mean mobility below which a ghost node cannot be moved
 
+// A bar is drawn in more slowly when contact has left less than this share of what it was to be drawn in by.
+constexpr double left_of_it = 0.5, slower = 0.5, faster = 1.2, least_drawn = 1e-5;
+
 /// Of (x - known) * rate = velocity and (velocity - known_velocity) * rate = acceleration at the end of a
 /// step.
 struct Formula {
@@ -29,14 +32,25 @@ Formula formula_of(const Motion& m, double h) {
     return f;
 }
 
-/// What of the misfit of every bar is more than a step may draw in, m.
-Eigen::VectorXd to_be_left(const Motion& m, double drawn_in) {
+/// The misfit of every bar that a step is to end with, m.
+Eigen::VectorXd to_be_left(const Motion& m) {
     Eigen::VectorXd c = misfit(m.cloth.bars, m.x);
     for (std::size_t i = 0; i < m.cloth.bars.size(); ++i) {
-        const double most = drawn_in * m.cloth.bars[i].length;
+        const double most = m.drawn_in[i] * m.cloth.bars[i].length;
         c[i] -= std::clamp(c[i], -most, most);
     }
     return c;
+}
+
+/// Bars that contact has kept from being drawn in wait for it.
+void adapt_drawing(Motion& m, const MotionOptions& o) {
+    const Eigen::VectorXd from = misfit(m.cloth.bars, m.x).cwiseAbs(), end = misfit(m.cloth.bars, m.candidate).cwiseAbs();
+    for (std::size_t i = 0; i < m.drawn_in.size(); ++i) {
+        const double wanted = std::min(from[i], m.drawn_in[i] * m.cloth.bars[i].length);
+        const bool kept = end[i] > from[i] - left_of_it * wanted;
+        m.drawn_in[i] *= kept ? slower : faster;
+        m.drawn_in[i] = std::clamp(m.drawn_in[i], std::min(least_drawn, o.drawn_in), o.drawn_in);
+    }
 }
 
 void need_nodes(const NonconformingCloth& cloth, const Points& given, const std::string& what) {
@@ -83,12 +97,13 @@ Motion start_motion(NonconformingCloth cloth, const Garment& garment, const Poin
 MotionStep try_step(Motion& motion, const Vec3& gravity, const GhostLoads& loads, const MotionOptions& options) {
     if (!loads.forces.empty()) need_nodes(motion.cloth, loads.forces, "forces");
     const double h = options.time_step;
+    if (motion.drawn_in.empty()) motion.drawn_in.assign(motion.cloth.bars.size(), options.drawn_in);
     const Formula f = formula_of(motion, h);
     const std::vector<double>& mass = motion.cloth.midpoints.mass;
     // Inertia is a spring to where the midpoints would go without force, damping one to where they come from.
     const double inertia = f.rate * (f.rate + options.damping);
     StepProblem problem{motion.problem, motion.cloth.midpoints, from_ghost_nodes(motion.cloth.midpoints, loads.forces),
-                        {}, loads.stiffness, motion.x, to_be_left(motion, options.drawn_in)};
+                        {}, loads.stiffness, motion.x, to_be_left(motion)};
     for (std::size_t i = 0; i < mass.size(); ++i) {
         problem.inertia.push_back(inertia * mass[i]);
         problem.load[i] += motion.problem.load[i] + mass[i] * (gravity + inertia * f.known[i] + f.rate * f.known_velocity[i]);
@@ -114,6 +129,7 @@ MotionStep try_step(Motion& motion, const Vec3& gravity, const GhostLoads& loads
 }
 
 void finish_step(Motion& motion, const MotionOptions& options) {
+    adapt_drawing(motion, options);
     motion.x_before = std::move(motion.x);
     motion.velocity_before = std::move(motion.velocity);
     motion.x = motion.candidate;

@@ -20,7 +20,7 @@ struct MotionOptions {
     double tolerance = 1e-7; ///< share of the mean midpoint's weight (9.81 m/s^2) that may go without answer
     double strain = 1e-9;    ///< of any bar, beyond what is drawn in later
     int max_iterations = 50;
-    double drawn_in = 1;     ///< strain by which a wrong length may change in a step
+    double drawn_in = 1;     ///< strain by which a wrong length may change in a step; less where contact undoes it, down to 1e-5
 };
 
 /// What holds a motion.
@@ -45,6 +45,7 @@ struct Motion {
     Points x_before, velocity_before; ///< a step earlier; empty when there is none
     double last_step = 0;             ///< s
     Eigen::VectorXd tension;          ///< N per bar, then three per node held
+    std::vector<double> drawn_in;     ///< strain, per bar, by which it may change in the next step; empty at the start
     bool isometric = false;           ///< the start could be made to keep the lengths
     Points candidate, candidate_velocity;
 };

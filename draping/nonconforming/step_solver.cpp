@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 
@@ -106,23 +107,27 @@ double longest(const VectorXd& v, const std::vector<char>& held) {
     return most;
 }
 
-/// The momentum of what nothing holds is kept to the last digits, whatever conjugate gradients leave.
-void go_as_a_whole(const Operator& w, const VectorXd& r, VectorXd& d) {
+/// Goes as a whole as far as lowers the energy, the residual r with it: the momentum of what nothing holds is kept to the last
+/// digits, whatever conjugate gradients leave.
+void go_as_a_whole(const Operator& w, VectorXd& r, VectorXd& d) {
     Vec3 force = Vec3::Zero();
     for (Eigen::Index e = 0; e < r.size(); e += 3) force += r.segment<3>(e);
     if (force.isZero(0)) return;
-    const VectorXd p = force.replicate(r.size() / 3, 1);
-    d -= r.dot(p) / p.dot(w.product(p)) * p;
+    const VectorXd p = force.replicate(r.size() / 3, 1), wp = w.product(p);
+    const double step = -r.dot(p) / p.dot(wp);
+    d += step * p;
+    r += step * wp;
 }
 
 /// W d + J^T y = -g, J d = -c. Nothing when W is not positive along motions that change no length.
-std::optional<Linear> solve(const Operator& w, IsometryDual& dual, const VectorXd& g, const VectorXd& c, const std::vector<char>& held,
-             const StepSolverOptions& o) {
+std::optional<Linear> solve(const Operator& w, IsometryDual& dual, const VectorXd& g, const VectorXd& c,
+                            const std::vector<char>& held, bool loose, const StepSolverOptions& o) {
     Linear s;
     // The shortest way to the lengths, then on from there along motions that keep them.
     s.d = -dual.mobile(dual.transpose_product(dual.multipliers(c)));
     s.multipliers = VectorXd::Zero(c.size());
     VectorXd r = g + w.product(s.d), z;
+    if (loose) go_as_a_whole(w, r, s.d);
     const auto project = [&] {
         // The residual is that less the bars' part, which would drown the rest in its rounding.
         const VectorXd y = dual.multipliers(dual.product(dual.mobile(r)));
@@ -147,8 +152,7 @@ std::optional<Linear> solve(const Operator& w, IsometryDual& dual, const VectorX
         p = next / rz * p - z;
         rz = next;
     }
-    if (s.multipliers.size() == Eigen::Index(dual.bars().size()) && std::find(held.begin(), held.end(), 1) == held.end())
-        go_as_a_whole(w, r, s.d);
+    if (loose) go_as_a_whole(w, r, s.d);
     return s;
 }
 
@@ -158,10 +162,17 @@ double worst_strain(const Bars& bars, const VectorXd& c) {
     return most;
 }
 
+Vec3 moment(const std::vector<double>& mass, const Points& x) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t e = 0; e < x.size(); ++e) sum += mass[e] * x[e];
+    return sum;
+}
+
 } // namespace
 
 StepSolver::StepSolver(const IsometricProblem& problem, const std::vector<HeldPlace>& places)
-    : dual_(int(problem.held.size()), problem.bars, places), held_(problem.held) {}
+    : dual_(int(problem.held.size()), problem.bars, places), held_(problem.held),
+      loose_(places.empty() && std::find(held_.begin(), held_.end(), 1) == held_.end()) {}
 
 bool StepSolver::factorise(const std::vector<Mat3>& diagonal) {
     std::vector<Mat3> mobility(diagonal.size(), Mat3::Zero());
@@ -172,6 +183,7 @@ bool StepSolver::factorise(const std::vector<Mat3>& diagonal) {
 
 void StepSolver::restore(const StepProblem& p, Points& x, double strain) {
     VectorXd c = misfits(p, x);
+    const Vec3 centre = moment(p.inertia, x);
     double now = worst_strain(dual_.bars(), c);
     for (int i = 0; i < most_restores && now > strain; ++i) {
         const double last = now;
@@ -180,6 +192,9 @@ void StepSolver::restore(const StepProblem& p, Points& x, double strain) {
         now = worst_strain(dual_.bars(), c);
         if (!(now < restore_rate * last)) break;
     }
+    if (!loose_) return;
+    const Vec3 back = (centre - moment(p.inertia, x)) / std::accumulate(p.inertia.begin(), p.inertia.end(), 0.0);
+    for (Vec3& q : x) q += back;
 }
 
 VectorXd StepSolver::misfits(const StepProblem& p, const Points& x) const {
@@ -210,10 +225,10 @@ IsometricResult StepSolver::step(const StepProblem& p, Points& x, VectorXd& tens
         if (result.iterations >= o.max_iterations) break;
         if (!std::isfinite(result.residual + result.strain) || !factorise(w.diagonal()))
             throw std::runtime_error("the motion of the cloth is no longer finite");
-        std::optional<Linear> s = solve(w, dual_, balance, c, held_, o);
+        std::optional<Linear> s = solve(w, dual_, balance, c, held_, loose_, o);
         if (!s) {
             w.pushes = false;
-            s = solve(w, dual_, balance, c, held_, o);
+            s = solve(w, dual_, balance, c, held_, loose_, o);
         }
         if (!s) throw std::runtime_error("the motion of the cloth has no finite stiffness");
         linear_iterations_ += s->iterations;

@@ -28,7 +28,7 @@ struct StepSolverOptions {
     double tolerance = 1e-9;      ///< N, residual
     double strain = 1e-9;         ///< of any bar, beyond its slack
     int max_iterations = 50;
-    double linear = 1e-3;         ///< share of the residual that the linear systems leave
+    double linear = 3e-3;         ///< share of the residual that the linear systems leave
     int max_linear = 1000;        ///< iterations in each
 };
 
@@ -48,12 +48,13 @@ public:
 
 private:
     bool factorise(const std::vector<Mat3>& diagonal);
-    /// Back to the lengths, by the last linearisation and as far as that leads.
+    /// Back to the lengths, by the last linearisation and as far as that leads; the centre of mass stays.
     void restore(const StepProblem& p, Points& x, double strain);
     Eigen::VectorXd misfits(const StepProblem& p, const Points& x) const;
 
     IsometryDual dual_;
     std::vector<char> held_;
+    bool loose_ = false; ///< nothing is held: momentum is to be kept
     long linear_iterations_ = 0;
 };
 

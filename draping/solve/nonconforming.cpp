@@ -11,7 +11,6 @@ namespace {
 constexpr double gravity = 9.81; // m/s2, by which forces are measured
 constexpr double hold_share = 10;  // of the nodes' inertia, with which touches hold
 constexpr double taken_up = 0.4;   // of what cloth on cloth does in a step: a ghost node is more mobile than its mass says
-constexpr int most_rounds = 2;     // solves of a step, until every touch that slides or pulls is known
 constexpr double least_mass = 0.1; // of the mean, that counts as a midpoint's weight
 
 std::vector<int> listed(const std::vector<char>& pinned) {
@@ -33,7 +32,7 @@ NonconformingStepper::NonconformingStepper(const Garment& garment, const std::ve
         if (!pinned[i] && node_mass_[i] > 0) inverse_mass_[i] = 1 / node_mass_[i];
     // One iteration a step; what it leaves of lengths, and of balance at rest, the next takes up.
     motion_options_.max_iterations = 1;
-    motion_options_.tolerance = 1e-5;
+    motion_options_.tolerance = 1e-6;
     motion_options_.strain = 1e-8;
 }
 
@@ -75,18 +74,13 @@ Points NonconformingStepper::candidate(const Moving& cloth, HeldTouches& touches
     Eigen::VectorXd momentum(3 * n);
     const Points loads = load_forces(cloth.x);
     for (std::size_t i = 0; i < n; ++i) momentum.segment<3>(3 * i) = dt * (loads[i] + cloth.other_force[i]);
-    Points v;
-    for (int round = 0; round < most_rounds; ++round) {
-        BlockMatrix held = stiffness_;
-        Eigen::VectorXd b = momentum;
-        touches.add(held, b);
-        GhostLoads acting{Points(n), &held};
-        flat(acting.forces) = b / dt;
-        v = try_step(motion_, Vec3::Zero(), acting, motion_options_).ghost_velocity;
-        for (std::size_t i = 0; i < n; ++i)
-            if (inverse_mass_[i] == 0) v[i].setZero();
-        if (!touches.let_go(v, round + 1 == most_rounds)) break;
-    }
+    touches.add(stiffness_, momentum);
+    GhostLoads acting{Points(n), &stiffness_};
+    flat(acting.forces) = momentum / dt;
+    Points v = try_step(motion_, Vec3::Zero(), acting, motion_options_).ghost_velocity;
+    for (std::size_t i = 0; i < n; ++i)
+        if (inverse_mass_[i] == 0) v[i].setZero();
+    touches.let_go(v, true);
     return v;
 }
 

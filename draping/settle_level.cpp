@@ -243,11 +243,11 @@ void settle_level(DrapeRun& run) {
         report.guarantee = motion ? motion->response->guarantee() : Guarantee::no_crossing;
     if (tangled || !run.grown || report.unresolved > 0) report.guarantee = Guarantee::none;
     run.result.barrier = {contact.body.distance, contact.body.stiffness, contact.cloth.stiffness};
+    if (motion) run.facts.kept_strain = motion->stepper->kept_strain();
     if (run.last_level()) {
         const int beyond = int(problem.beyond_limits(run.x).size());
         if (motion) problem.touch(run.x);
         note_facts(run, acting, motion ? motion->touch_facts(problem.contact()) : count_touching(problem.contact(), run.x));
-        if (motion) run.facts.kept_strain = motion->stepper->kept_strain();
         const bool at_rest = motion ? rest.rested : r.end == SettleEnd::settled;
         const bool out_of_steps = motion ? !at_rest && rest.broken.empty() : run.iterations_left <= 0 && beyond == 0;
         if (run.stopped || out_of_steps)

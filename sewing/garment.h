@@ -72,6 +72,9 @@ struct Garment {
     }
 };
 
+/// Whether the cloth is folded at this edge: it is smooth elsewhere.
+inline bool is_crease(const Garment& garment, int edge) { return garment.rest.angles[edge] != 0; }
+
 /// Vertices of the garment along a span of an outline, from t0 to t1. Spans of seams, pins and elastics end
 /// exactly in vertices; of others, the vertices inside are returned.
 std::vector<int> vertices_along(const Garment& garment, const EdgeSpan& span);

@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
-#include <numbers>
 
 namespace toile {
 
@@ -33,8 +32,23 @@ std::array<Vec3, 4> places(const HingeBend& b, const Points& x) {
     return {x[b.nodes[0]], x[b.nodes[1]], x[b.nodes[2]], x[b.nodes[3]]};
 }
 
-/// How far the angle is from rest, the short way round.
-double turned(const HingeBend& b, double angle) { return std::remainder(angle - b.rest, 2 * std::numbers::pi); }
+/// How far the angle is from rest. Not the short way round, which from a fold the wrong way leads through the cloth.
+double turned(const HingeBend& b, double angle) { return angle - b.rest; }
+
+HingeBend make_hinge_bend(const Garment& garment, const std::vector<Fabric>& fabrics, const Hinge& hinge) {
+    double d = 0, length = 0, area = 0;
+    for (const int t : hinge.triangles) {
+        const auto& of = garment.edges.of_triangle[t];
+        const int k = int(std::find(of.begin(), of.end(), hinge.edge) - of.begin());
+        const Vec2 edge = rest_edge(garment.rest.edges[t], k), across(-edge.y(), edge.x());
+        d += bend_modulus(fabrics[garment.panel_of_triangle[t]], std::atan2(across.x(), across.y())) / 2;
+        length += edge.norm() / 2;
+        area += rest_area(garment.rest.edges[t]);
+    }
+    const double altitude = area / length; // the mean of both
+    if (is_crease(garment, hinge.edge)) return {hinge.nodes, garment.rest.angles[hinge.edge], d * length / crease_width};
+    return {hinge.nodes, 0, d * area / (altitude * altitude)};
+}
 
 } // namespace
 
@@ -108,20 +122,15 @@ Eigen::Matrix<double, 12, 12> hinge_hessian(const std::array<Vec3, 4>& x) {
 
 std::vector<HingeBend> make_hinge_bends(const Garment& garment, const std::vector<Fabric>& fabrics) {
     std::vector<HingeBend> bends;
-    for (const Hinge& hinge : hinges_of(garment)) {
-        double d = 0, length = 0, area = 0;
-        for (const int t : hinge.triangles) {
-            const auto& of = garment.edges.of_triangle[t];
-            const int k = int(std::find(of.begin(), of.end(), hinge.edge) - of.begin());
-            const Vec2 edge = rest_edge(garment.rest.edges[t], k), across(-edge.y(), edge.x());
-            d += bend_modulus(fabrics[garment.panel_of_triangle[t]], std::atan2(across.x(), across.y())) / 2;
-            length += edge.norm() / 2;
-            area += rest_area(garment.rest.edges[t]);
-        }
-        const double altitude = area / length; // the mean of both
-        bends.push_back({hinge.nodes, garment.rest.angles[hinge.edge], d * area / (altitude * altitude)});
-    }
+    for (const Hinge& hinge : hinges_of(garment)) bends.push_back(make_hinge_bend(garment, fabrics, hinge));
     return bends;
+}
+
+std::vector<HingeBend> make_creases(const Garment& garment, const std::vector<Fabric>& fabrics) {
+    std::vector<HingeBend> creases;
+    for (const Hinge& hinge : hinges_of(garment))
+        if (is_crease(garment, hinge.edge)) creases.push_back(make_hinge_bend(garment, fabrics, hinge));
+    return creases;
 }
 
 double value(const std::vector<HingeBend>& bends, const Points& x) {

@@ -38,9 +38,15 @@ struct HingeBend {
     double stiffness = 0; ///< J
 };
 
+inline constexpr double crease_width = 2e-3; ///< m, of the cloth that a pressed fold has bent
+
 /// D is the fabric's stiffness for a cylinder across the edge. `fabrics` has one entry per panel; where two panels meet, the
-/// mean of both.
+/// mean of both. A crease bends as a strip of the width of a pressed fold does, whatever the mesh: its stiffness is
+/// D length / crease_width.
 std::vector<HingeBend> make_hinge_bends(const Garment& garment, const std::vector<Fabric>& fabrics);
+
+/// Those of creases alone.
+std::vector<HingeBend> make_creases(const Garment& garment, const std::vector<Fabric>& fabrics);
 
 double value(const std::vector<HingeBend>& bends, const Points& x);
 void add_gradient(const std::vector<HingeBend>& bends, const Points& x, Eigen::VectorXd& g);

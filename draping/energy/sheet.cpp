@@ -80,6 +80,7 @@ Sheet make_sheet(const Garment& garment, const std::vector<Fabric>& fabrics) {
     Sheet sheet;
     sheet.stretch = make_stretch(garment, fabrics);
     sheet.bending = make_bending(garment, fabrics);
+    sheet.creases = make_creases(garment, fabrics);
     sheet.limits = make_strain_limits(garment, fabrics);
     // One list of nodes per element: the patch's, and the compact bending's after them.
     for (std::size_t t = 0; t < sheet.stretch.size(); ++t) {
@@ -103,7 +104,7 @@ Sheet make_sheet(const Garment& garment, const std::vector<Fabric>& fabrics) {
 }
 
 double sheet_value(const Sheet& sheet, const Points& x) {
-    double sum = sheet.softness * stretch_value(sheet.stretch, x) + bend_value(sheet.bending, x);
+    double sum = sheet.softness * stretch_value(sheet.stretch, x) + bend_value(sheet.bending, x) + value(sheet.creases, x);
     if (!sheet.limits.empty()) sum += strain_limit_value(sheet.limits, x);
     return sum;
 }
@@ -117,6 +118,11 @@ void sheet_gradient(const Sheet& sheet, const Points& x, Points& gradient) {
         flat(gradient) += sheet.softness * flat(soft);
     }
     bend_gradient(sheet.bending, x, gradient);
+    if (!sheet.creases.empty()) {
+        Eigen::VectorXd bent = Eigen::VectorXd::Zero(3 * Eigen::Index(x.size()));
+        add_gradient(sheet.creases, x, bent);
+        flat(gradient) += bent;
+    }
     if (!sheet.limits.empty()) strain_limit_gradient(sheet.limits, x, gradient);
 }
 
@@ -126,6 +132,7 @@ void sheet_couplings(const Sheet& sheet, std::vector<std::pair<int, int>>& pairs
         for (int a = 0; a < e.count; ++a)
             for (int b = 0; b < a; ++b) pairs.emplace_back(e.node[a], e.node[b]);
     }
+    couplings(sheet.creases, pairs);
 }
 
 void sheet_slots(Sheet& sheet, const BlockMatrix& matrix) {
@@ -163,6 +170,7 @@ void sheet_hessian(const Sheet& sheet, const Points& x, HessianKind kind, BlockM
                     matrix.add_off_diagonal(node[a], sheet.slots[t][a * Patch::max_nodes + b], block.transpose());
             }
     });
+    add_hessian(sheet.creases, x, kind, matrix);
 }
 
 void sheet_beyond_compact(const Sheet& sheet, const Eigen::VectorXd& v, Eigen::VectorXd& y) {

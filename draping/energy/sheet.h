@@ -5,6 +5,7 @@
 
 #include "draping/algebra/block_matrix.h"
 #include "draping/energy/bend.h"
+#include "draping/energy/hinge.h"
 #include "draping/energy/strain_limit.h"
 #include "draping/energy/stretch.h"
 
@@ -13,6 +14,7 @@ namespace toile {
 struct Sheet {
     std::vector<StretchElement> stretch;
     Bending bending;
+    std::vector<HingeBend> creases;
     Eigen::SparseMatrix<double> beyond_compact; ///< bending.stiffness less its compact form
     std::vector<StrainLimit> limits;            ///< empty: none
     double softness = 1; ///< factor on the membrane; below 1 on the way to a drape, whose steps it lengthens

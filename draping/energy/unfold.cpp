@@ -52,7 +52,7 @@ Unfolding start_unfolding(const Garment& garment, int t) {
 int neighbour(const Garment& garment, int t, int k) {
     const EdgeTable& edges = garment.edges;
     const int e = edges.of_triangle[t][k];
-    if (edges.triangles_at(e) != 2) return -1;
+    if (edges.triangles_at(e) != 2 || is_crease(garment, e)) return -1;
     const int a = edges.incident[edges.first[e]], b = edges.incident[edges.first[e] + 1];
     if (a == b) return -1;
     return a == t ? b : a;

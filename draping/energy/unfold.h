@@ -28,7 +28,7 @@ struct Unfolding {
 Unfolding start_unfolding(const Garment& garment, int t);
 
 /// The triangle that shares the edge opposite corner k of t; -1 at a border (an edge with one triangle, or
-/// with more than two).
+/// with more than two) and at a crease, across which cloth is not smooth.
 int neighbour(const Garment& garment, int t, int k);
 
 /// Adds the neighbour of placed triangle i over the edge opposite corner k, if there is one and it is not

@@ -80,7 +80,7 @@ std::vector<LengthConstraint> yarn_edges(const Garment& g) {
 }
 
 YarnCloth::YarnCloth(const Garment& g, const std::vector<Fabric>& fabrics, std::vector<LengthConstraint> yarns)
-    : tension(std::move(yarns)), bending_(make_bending(g, fabrics)) {
+    : tension(std::move(yarns)), bending_(make_bending(g, fabrics)), creases_(make_creases(g, fabrics)) {
     std::set<std::array<int, 2>> kept;
     for (const LengthConstraint& c : tension.lines()) kept.insert({c.a, c.b});
     for (std::size_t t = 0; t < g.triangles.size(); ++t) {
@@ -95,7 +95,7 @@ YarnCloth::YarnCloth(const Garment& g, const std::vector<Fabric>& fabrics, std::
 }
 
 double YarnCloth::value(const Points& x) const {
-    double sum = tension.value(x) + bend_value(bending_, x);
+    double sum = tension.value(x) + bend_value(bending_, x) + toile::value(creases_, x);
     for (const GrainTriangle& t : triangles_) sum += energy(t, grain_images(t.nodes, t.shape, x));
     return sum;
 }
@@ -103,6 +103,7 @@ double YarnCloth::value(const Points& x) const {
 void YarnCloth::add_gradient(const Points& x, Eigen::VectorXd& g) const {
     tension.add_gradient(x, g);
     toile::add_gradient(bending_, x, g);
+    toile::add_gradient(creases_, x, g);
     for (const GrainTriangle& t : triangles_) {
         const GrainSlope s = slope(t, grain_images(t.nodes, t.shape, x));
         for (int k = 0; k < 3; ++k)
@@ -115,11 +116,13 @@ void YarnCloth::couplings(std::vector<std::pair<int, int>>& pairs) const {
     for (const GrainTriangle& t : triangles_)
         for (int k = 0; k < 3; ++k) pairs.emplace_back(t.nodes[k], t.nodes[(k + 1) % 3]);
     toile::couplings(bending_, pairs);
+    toile::couplings(creases_, pairs);
 }
 
 void YarnCloth::add_hessian(const Points& x, HessianKind kind, BlockMatrix& h) const {
     tension.add_hessian(x, kind, h);
     toile::add_hessian(bending_, h);
+    toile::add_hessian(creases_, x, kind, h);
     for (const GrainTriangle& t : triangles_)
         h.add_element(t.nodes, at_corners(t.shape, stiffness(t, grain_images(t.nodes, t.shape, x), kind)));
 }

@@ -6,6 +6,7 @@
 
 #include "draping/energy/bend.h"
 #include "draping/energy/grain.h"
+#include "draping/energy/hinge.h"
 #include "draping/energy/tension.h"
 
 namespace toile {
@@ -16,7 +17,7 @@ namespace toile {
 /// when they are not fewer than the three coordinates per node, less the six of a rigid motion: nothing could move.
 std::vector<LengthConstraint> yarn_edges(const Garment& garment);
 
-/// Shear, bending, tension of the yarns; and stretch of triangles along warp or weft where they have no edge that is a yarn
+/// Shear, bending, creases, tension of the yarns; and stretch of triangles along warp or weft where they have no edge that is a yarn
 /// in that direction. Of a GrainTriangle of area A, e = (T^T T - I) / 2 its strain:
 /// E = A / 2 (k_weft e_uu^2 + k_warp e_vv^2 + shear (2 e_uv)^2). No coupling of warp and weft; 2 e_uv is the sine of the
 /// shear angle where both keep their lengths.
@@ -36,6 +37,7 @@ public:
 private:
     std::vector<GrainTriangle> triangles_;
     Bending bending_;
+    std::vector<HingeBend> creases_;
 };
 
 } // namespace toile

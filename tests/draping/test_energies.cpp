@@ -73,6 +73,15 @@ void add_sheet(std::vector<EnergyCase>& cases) {
         if (state.name == "collapsed") angles.step = 5e-11;
         cases.push_back({model_energy("triangles", std::make_shared<TriangleCloth>(g, f)), angles});
         cases.push_back({model_energy("projective", std::make_shared<ProjectiveCloth>(g, f)), state});
+        Garment folded = g;
+        for (int e = 0; e < folded.edges.size(); e += 3) folded.rest.angles[e] = 1.5;
+        const auto creases = make_creases(folded, f);
+        REQUIRE(creases.size() > 5);
+        cases.push_back({block_energy(
+                             "creases", [=](const Points& at) { return value(creases, at); },
+                             [=](const Points& at, VectorXd& g) { add_gradient(creases, at, g); },
+                             [=](const Points& at, HessianKind kind, BlockMatrix& h) { add_hessian(creases, at, kind, h); }),
+                         angles});
     }
 }
 

@@ -21,9 +21,17 @@ constexpr double gaping = 0.2;          // m, a gap from which cloth hangs by no
 constexpr double hanging_step = 0.03;   // m, an iteration's longest motion of cloth that hangs down
 constexpr int hanging_iterations = 400; // at most, in each of
 constexpr int most_hangings = 3;        // times that cloth hangs down
+constexpr int pressing_iterations = 100; // at most, in which creases fold
 constexpr double machine_gap = 0.1;     // of the edge length: what sewing by machine leaves behind it
 constexpr int machine_patience = 30;    // rounds that it waits for a gap to close
-constexpr int machine_stitches = 2;     // sewn at a time
+
+/// How sewing by machine goes.
+struct Machine {
+    int stitches;   // sewn at a time, and
+    int iterations; // between
+};
+
+constexpr Machine quick{2, 4}, careful{1, 12};
 
 double mean_gap(const Garment& g, const Points& x) {
     double sum = 0;
@@ -97,6 +105,15 @@ SettleOptions hanging_options() {
     return o;
 }
 
+/// Pleats lie folded before they are sewn, or panels that are several times as wide would close round the arms.
+void press_creases(DrapeRun& run, ClothProblem& problem, Points& x, Cholesky& factor) {
+    SettleOptions o;
+    o.tolerance = 1;
+    o.max_iterations = pressing_iterations;
+    o.exact_below = 0;
+    run.settle_some(problem, x, factor, o);
+}
+
 void start_to_pull(ClothProblem& problem, const Garment& open, int stitch) {
     const double length = open.stitches[stitch].length;
     problem.stitches[stitch].stiffness = seam_stiffness * length;
@@ -136,7 +153,8 @@ struct MachineSeam {
 
 /// Lets the next stitches of a seam pull, if what is sewn of it has closed, and pulls harder on what has not.
 /// A seam begins at an end that is closed on. Returns whether there were any.
-bool sew_on(const DrapeRun& run, const Garment& open, MachineSeam& seam, ClothProblem& problem, const Points& x) {
+bool sew_on(const DrapeRun& run, const Garment& open, int stitches, MachineSeam& seam, ClothProblem& problem,
+            const Points& x) {
     const auto gap = [&](int k) { return stitch_gap(open.stitches[k], x); };
     if (seam.sewn == 0) {
         if (gap(seam.stitches.back()) < gap(seam.stitches.front()))
@@ -153,7 +171,7 @@ bool sew_on(const DrapeRun& run, const Garment& open, MachineSeam& seam, ClothPr
         spring.cap = std::min(1.2 * spring.cap, most_pull * seam_pull * open.stitches[k].length);
         spring.stiffness = std::min(1.5 * spring.stiffness, stiffest_seam * spring.cap);
     }
-    const std::size_t next = closed ? std::min(seam.sewn + machine_stitches, seam.stitches.size()) : seam.sewn;
+    const std::size_t next = closed ? std::min(seam.sewn + stitches, seam.stitches.size()) : seam.sewn;
     const bool any = next > seam.sewn;
     for (; seam.sewn < next; ++seam.sewn) start_to_pull(problem, open, seam.stitches[seam.sewn]);
     return any;
@@ -161,21 +179,23 @@ bool sew_on(const DrapeRun& run, const Garment& open, MachineSeam& seam, ClothPr
 
 /// Sews waiting seams as on a machine, each after the one that it follows on: sides pulled shut all along at
 /// once pinch the folds that hang between them.
-void sew_by_machine(DrapeRun& run, const Garment& open, const Waiting& waiting, ClothProblem& problem, Points& x,
+void sew_by_machine(DrapeRun& run, const Garment& open, const Sewing& way, ClothProblem& problem, Points& x,
                     Cholesky& factor) {
+    const Waiting& waiting = way.waiting;
+    const Machine machine = way.careful ? careful : quick;
     std::vector<MachineSeam> seams(waiting.seams.size());
     for (std::size_t k = 0; k < open.stitches.size(); ++k)
         if (waiting.seams[open.stitches[k].seam]) seams[open.stitches[k].seam].stitches.push_back(int(k));
     std::erase_if(seams, [](const MachineSeam& s) { return s.stitches.empty(); });
     SettleOptions o = hanging_options();
     o.tolerance = 1e-2;
-    o.max_iterations = 4;
+    o.max_iterations = machine.iterations;
     o.time_step = 0.1;
     problem.gravity = run.options.gravity;
     for (int waited = 0; waited < machine_patience && !run.stopped; ++waited) {
         bool all = true;
         for (MachineSeam& s : seams) {
-            if (sew_on(run, open, s, problem, x)) waited = 0;
+            if (sew_on(run, open, machine.stitches, s, problem, x)) waited = 0;
             all = all && s.sewn == s.stitches.size();
         }
         run.settle_some(problem, x, factor, o);
@@ -229,12 +249,13 @@ Sewn pull_shut(DrapeRun& run, const Start& start, const Sewing& way) {
         }
         return close_open_seams(run, some, problem, sewn.x, factor);
     };
+    if (!problem.sheet().creases.empty()) press_creases(run, problem, sewn.x, factor);
     const bool some_wait = !way.waiting.seams.empty();
     double gap = close(0);
     if (some_wait) gap = close(1);
     for (int k = 0; some_wait && k < most_hangings && gap < gaping && !run.stopped; ++k) {
         hang(run, open, way.waiting, problem, sewn.x, factor);
-        if (k == 0) sew_by_machine(run, open, way.waiting, problem, sewn.x, factor);
+        if (k == 0) sew_by_machine(run, open, way, problem, sewn.x, factor);
         gap = close(2);
         if (gap < forced_share * run.edge_length()) break;
     }

@@ -22,7 +22,8 @@ struct Start {
 /// How seams are closed.
 struct Sewing {
     bool self = true; ///< with contact between panels
-    Waiting waiting;  ///< until the other seams are closed and the cloth hangs
+    Waiting waiting = {};  ///< until the other seams are closed and the cloth hangs, and are then
+    bool careful = false;  ///< sewn one stitch at a time
 };
 
 struct Sewn {

@@ -94,7 +94,10 @@ void sew_coarsest(DrapeRun& run) {
             const Start lifted = place(run, lift);
             done = closes(lifted, {true, {}}) || closes(lifted, {false, {}});
         }
-    if (!done && sewn.open && !waiting.seams.empty()) closes(place(run, 0, waiting.outside), {true, waiting});
+    if (!done && sewn.open && !waiting.seams.empty()) {
+        const Start hung = place(run, 0, waiting.outside);
+        done = closes(hung, {true, waiting}) || closes(hung, {true, waiting, true});
+    }
     run.x = merge(run.garment, run.joined, sewn.x);
     if (sewn.start.lift != 0)
         run.result.decisions.push_back(
@@ -111,6 +114,8 @@ void sew_coarsest(DrapeRun& run) {
         if (!sewn.way.waiting.seams.empty())
             run.result.decisions.push_back("seams with the body in their way were sewn when the others were closed "
                                            "and the cloth hung down: all at once could not close");
+        if (sewn.way.careful)
+            run.result.decisions.push_back("they were sewn stitch by stitch: more at a time pinched folds between their sides");
         if (!sewn.way.self && sewn.crossings == 0)
             run.result.decisions.push_back("cloth passed through itself while seams closed: with contact "
                                            "between panels a seam could not close; the sewn garment does "

@@ -115,6 +115,7 @@ def whole(half):
 class Garment:
     def __init__(self):
         self.panels, self.stitches = {}, []
+        self.lines = {}  # of panels, as the companion file has them
 
     def panel(self, name, outline, translation, turn=0.0, label="body", about_y=0.0):
         """Places an outline: turned by `turn` degrees in its plane, or out of it about y, then moved."""
@@ -385,6 +386,39 @@ def two_layer_skirt(b):
     return garment
 
 
+def pleated_skirt(b, count=8, skirt_length=45.0, band=4.0, angle=170.0):
+    """Front and back of `count` knife pleats each on a waistband. Of a pleat a third is seen, a third lies under it
+    and a third leads back; at the waist the last two are sewn to each other."""
+    garment = Garment()
+    seen = (b["waist"] + b["waist_ease"]) / (2 * count)
+    wide, high = 1.5 * count * seen, skirt_length
+    top, folds = [], []
+    for k in range(count):
+        at = [wide - (3 * k + part) * seen for part in (1, 2, 3)]
+        top += [Side((x, 0), tag=f"{part}_{k}") for x, part in zip(at, ("seen", "under", "back"))]
+        folds += [(at[0], angle), (at[1], -angle)]
+    front = Outline((-wide, -high), [Side((wide, -high), tag="hem"), Side((wide, 0), tag="left_side"), *top,
+                                     Side((-wide, -high), tag="right_side")])
+    round_half = count * seen / 2
+    waist = Outline((-round_half, 0), [
+        *[Side((-round_half + (k + 1) * seen, 0), tag=f"seen_{count - 1 - k}") for k in range(count)],
+        Side((round_half, band), tag="left_end"),
+        Side((-round_half, band), tag="top", label="lower_interface"),
+        Side((-round_half, 0), tag="right_end")])
+    y = b["waist_y"] - band
+    for half, z, turned in (("front", b["front_z"] + 7, False), ("back", b["back_z"] - 8, True)):
+        for name, outline, drop in ((half, front, 1), (f"band_{half}", waist, 0)):
+            garment.panel(name, outline.mirror().turned() if turned else outline, (0, y - drop, z), label="leg")
+        garment.lines[half] = [{"vertices": [rounded((-x if turned else x, 0)), rounded((-x if turned else x, -high))],
+                                "kind": "pleat", "angle": fold} for x, fold in folds]
+        for k in range(count):
+            garment.sew(half, f"seen_{k}", f"band_{half}", f"seen_{k}")
+            garment.sew(half, f"under_{k}", half, f"back_{k}")
+    garment.sew_both("front", "left_side", "back", "left_side")
+    garment.sew_both("band_front", "left_end", "band_back", "left_end")
+    return garment
+
+
 # ---- trousers ----------------------------------------------------------------------------------------------------
 
 def trouser_half(waist, dart, dart_at, dart_length, hip, fork, hem, waist_y, hip_y, crotch_y, top, lean, hip_length):
@@ -521,15 +555,17 @@ def dress(b):
 
 GARMENTS = {"tee": (tee, "jersey"), "skirt": (skirt, "wool"), "trousers": (trousers, "linen"),
             "dress": (dress, "poplin"), "hooded_top": (hooded_top, "jersey"),
-            "two_layer_skirt": (two_layer_skirt, "poplin"), "shirt_and_jacket": (shirt_and_jacket, "jersey")}
+            "two_layer_skirt": (two_layer_skirt, "poplin"), "pleated_skirt": (pleated_skirt, "wool"),
+            "shirt_and_jacket": (shirt_and_jacket, "jersey")}
 OUTER = {"over_": "wool", "jacket_": "denim"}  # panels so named lie outside, and their fabric
 
 
-def companion(panels, fabric):
+def companion(garment, fabric):
     said = {"toile": 1, "fabric": fabric}
-    outer = {name: {"fabric": cloth, "layer": 1} for name in panels for word, cloth in OUTER.items()
-             if name.startswith(word)}
-    return dict(said, panels=outer) if outer else said
+    panels = {name: {"fabric": cloth, "layer": 1} for name in garment.panels for word, cloth in OUTER.items()
+              if name.startswith(word)}
+    panels |= {name: {"lines": lines} for name, lines in garment.lines.items()}
+    return dict(said, panels=panels) if panels else said
 
 
 def main():
@@ -548,7 +584,7 @@ def main():
     options.out.mkdir(parents=True, exist_ok=True)
     for name, (draft, fabric) in GARMENTS.items():
         garment = draft(body)
-        for ending, what in ((".json", garment.specification()), (".toile.json", companion(garment.panels, fabric))):
+        for ending, what in ((".json", garment.specification()), (".toile.json", companion(garment, fabric))):
             (options.out / f"{name}{ending}").write_text(json.dumps(what, indent=1) + "\n")
 
 

@@ -22,7 +22,7 @@ using namespace toile;
 namespace {
 
 constexpr const char* names[] = {"tee",        "skirt",           "trousers",        "dress",
-                                 "hooded_top", "two_layer_skirt", "shirt_and_jacket"};
+                                 "hooded_top", "two_layer_skirt", "pleated_skirt",   "shirt_and_jacket"};
 const std::string folder = std::string(TOILE_SOURCE_DIR) + "/examples/";
 
 std::string contents(const std::string& path) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cloth over cloth: the layered garments of examples/, on the built-in form.
+#include "draping/energy/hinge.h"
 #include "geometry/bvh.h"
 #include "geometry/distance.h"
 #include "src/pipeline.h"
@@ -99,4 +100,20 @@ TEST_CASE("the outer layer lies over the inner one") {
         CHECK(share_in_order(draped(name), under) > 0.98);
         CHECK(under > 100);
     }
+}
+
+TEST_CASE("a skirt falls in the pleats that were pressed into it") {
+    const DrapeOutcome outcome = draped("pleated_skirt");
+    const Garment& g = outcome.result.garment;
+    const Points& x = outcome.result.state.positions;
+    int creases = 0, folded = 0;
+    for (const Hinge& h : hinges_of(g)) {
+        if (!is_crease(g, h.edge)) continue;
+        const auto& n = h.nodes;
+        const double share = hinge_angle({x[n[0]], x[n[1]], x[n[2]], x[n[3]]}).value / g.rest.angles[h.edge];
+        ++creases;
+        folded += share > 0.5;
+    }
+    CHECK(creases > 300);
+    CHECK(folded > 0.9 * creases);
 }

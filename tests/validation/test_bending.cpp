@@ -5,8 +5,7 @@
 #include "draping/energy/bend.h"
 #include "draping/energy/stretch.h"
 
-#include "tests/support/plates.h"
-#include "tests/support/static_solver.h"
+#include "tests/support/clamped_strip.h"
 
 #include <catch2/catch.hpp>
 
@@ -29,54 +28,21 @@ Fabric plate(double k, double compression) {
     return f;
 }
 
-struct Strip {
-    FlatMesh mesh;
-    int nodes;
-    std::vector<Term> terms;
-    std::vector<double> areas;
-};
-
-Strip strip(int along, std::uint64_t seed, const Fabric& fabric) {
-    Strip s;
-    s.mesh = mirrored(jittered_rectangle(1, 0.25, 1.0 / along, 0.3, seed));
-    const Garment garment = garment_of(s.mesh);
-    s.nodes = garment.node_count;
-    s.terms = {stretch_term(make_stretch(garment, {fabric}), s.nodes),
-               bend_term(make_bending(garment, {fabric}), s.nodes)};
-    s.areas = node_areas(garment);
-    return s;
+std::vector<Term> plate_terms(const Garment& garment, const Fabric& fabric) {
+    return {stretch_term(make_stretch(garment, {fabric}), garment.node_count),
+            bend_term(make_bending(garment, {fabric}), garment.node_count)};
 }
 
-// Both arms by one: nodes at x = 0 are held, those at x < 0 mirror those at x > 0.
-Freedoms clamped(const Strip& s, const VectorXd& q) {
-    Freedoms freedoms(q);
-    const std::vector<int> twin = twins(s.mesh.points);
-    for (int i = 0; i < s.nodes; ++i)
-        for (int c = 0; c < 3; ++c) {
-            if (std::abs(s.mesh.points[i].x()) < 1e-12) freedoms.hold(3 * i + c, q[3 * i + c]);
-            if (twin[i] != i) freedoms.tie(3 * i + c, 3 * twin[i] + c, c == 0 ? -1 : 1);
-        }
-    freedoms.number();
-    return freedoms;
+ClampedStrip strip(int along, std::uint64_t seed, const Fabric& fabric) {
+    return clamped_strip(jittered_rectangle(1, 0.25, 1.0 / along, 0.3, seed),
+                         [&](const Garment& g) { return plate_terms(g, fabric); });
 }
 
 double tip_slope(int along, std::uint64_t seed, const Fabric& fabric) {
-    const Strip s = strip(along, seed, fabric);
-    const std::vector<Vec2> curve = elastica(10);
-    VectorXd q(3 * s.nodes), load = VectorXd::Zero(3 * s.nodes);
-    for (int i = 0; i < s.nodes; ++i) {
-        const Vec2& p = s.mesh.points[i];
-        const Vec2 at = curve[std::lround(std::abs(p.x()) * (int(curve.size()) - 1))];
-        q.segment<3>(3 * i) << std::copysign(at.x(), p.x()), p.y(), -at.y();
-        load[3 * i + 2] = -10 * s.areas[i];
-    }
-    const StaticResult r = solve_static(s.terms, load, clamped(s, q), q);
-    REQUIRE(r.converged);
-    CHECK(r.stable);
-    double x = 0, z = 0;
-    for (int i = 0; i < s.nodes; ++i)
-        if (s.mesh.points[i].x() > 1 - 1e-9) x += r.q[3 * i], z -= r.q[3 * i + 2];
-    return z / x;
+    const Hung hung = hang(strip(along, seed, fabric), 10);
+    REQUIRE(hung.converged);
+    CHECK(hung.stable);
+    return hung.drop_over_reach;
 }
 
 } // namespace
@@ -133,7 +99,7 @@ TEST_CASE("a twisted sheet", "[validation]") {
 TEST_CASE("lateral buckling of a strip on edge", "[validation]") {
     const double critical = 21.3255;
     for (std::uint64_t seed = 1; seed <= 2; ++seed) {
-        const Strip s = strip(20, seed, plate(2e6, 1));
+        const ClampedStrip s = strip(20, seed, plate(2e6, 1));
         VectorXd q(3 * s.nodes), load = VectorXd::Zero(3 * s.nodes);
         for (int i = 0; i < s.nodes; ++i) {
             q.segment<3>(3 * i) << s.mesh.points[i].x(), s.mesh.points[i].y(), 0;

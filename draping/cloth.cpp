@@ -3,21 +3,10 @@
 
 #include "geometry/disjoint_sets.h"
 
-#include <Eigen/LU>
-
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace toile {
-
-namespace {
-
-constexpr double friction_rest = 10; // residual below which friction only gives way,
-constexpr double friction_off = 1e4; // until the residual is above this again: forces of impacts are no friction
-constexpr int renew_every = 8;        // arrivals after which what is lagged is renewed in any case
-
-} // namespace
 
 ContactCloth contact_cloth(const Garment& g) {
     ContactCloth c;
@@ -68,24 +57,23 @@ std::vector<double> node_masses(const Garment& g, const PanelFabrics& fabrics) {
 
 ClothProblem::ClothProblem(const Garment& garment, const PanelFabrics& fabrics, const TriMesh& body,
                            const ContactOptions& contact)
-    : NodeProblem(node_masses(garment, fabrics)), sheet_(make_sheet(garment, fabrics)),
-      contact_(contact_cloth(garment), body, contact) {
-    limits_.swap(sheet_.limits);
-}
+    : ClothProblem(std::make_unique<SheetEnergy>(make_sheet(garment, fabrics)), garment, fabrics, body, contact) {}
 
-void ClothProblem::rest_here(const Points& x, const FrictionCoefficients& coefficients, bool at_rest) {
-    friction = friction_at(x, coefficients.body);
-    cloth_friction = {};
-    cloth_friction.coefficient = coefficients.cloth;
-    arrivals_ = 0;
-    residual_ = renewed_at_ = std::numeric_limits<double>::infinity();
-    near_rest_ = rising_ = false;
-    trusted_ = at_rest;
+ClothProblem::ClothProblem(std::unique_ptr<Energy> model, const Garment& garment, const PanelFabrics& fabrics,
+                           const TriMesh& body, const ContactOptions& contact)
+    : FreeCloth(std::move(model), node_masses(garment, fabrics)), RestingContact(contact_cloth(garment), body, contact) {
+    if (auto* own = dynamic_cast<SheetEnergy*>(energy_.get())) {
+        sheet_ = &own->sheet;
+        limits_.swap(sheet_->limits);
+    } else {
+        limits_ = make_strain_limits(garment, fabrics);
+    }
 }
 
 void ClothProblem::limit_strain(double turn, double tighter) {
-    sheet_.limits = limits_;
-    for (StrainLimit& limit : sheet_.limits) {
+    if (!sheet_) return;
+    sheet_->limits = limits_;
+    for (StrainLimit& limit : sheet_->limits) {
         limit.turn = turn;
         limit.weft = 1 + (1 - tighter) * (limit.weft - 1);
         limit.warp = 1 + (1 - tighter) * (limit.warp - 1);
@@ -93,144 +81,25 @@ void ClothProblem::limit_strain(double turn, double tighter) {
     }
 }
 
-void ClothProblem::match_cloth_friction(const Points& x) {
-    cloth_forces_ = contact_.cloth_forces(active_);
-    match_ties(cloth_friction, cloth_forces_, arrived_at_, x);
-    arrived_at_ = x;
-}
-
-void ClothProblem::renew_friction(const Points& x) {
-    rising_ = false;
-    const auto weight = [&](int i) { return 9.81 * node_mass_[i]; };
-    if (friction.coefficient > 0) {
-        std::vector<double> least(points());
-        for (int i = 0; i < points(); ++i) least[i] = weight(i);
-        rising_ = renew(friction, x, contact_.body_forces(active_), least, trusted_);
-    }
-    if (cloth_friction.coefficient > 0) {
-        Points force;
-        std::vector<double> least;
-        for (const PairForce& f : cloth_forces_) {
-            force.push_back(f.force);
-            double carried = 0;
-            for (int k = 0; k < 4; ++k) carried += std::abs(f.weight[k]) * weight(f.point[k]);
-            least.push_back(carried);
-        }
-        rising_ = renew(cloth_friction, x, force, least, trusted_) || rising_;
-    }
-}
-
-void ClothProblem::adapt_friction(const Points& x) {
-    const bool at_rest = residual_ < friction_rest;
-    if (friction.coefficient > 0) {
-        const Points force = contact_.body_forces(active_);
-        for (int i = 0; i < points(); ++i)
-            if (friction.ties[i].force > 0) follow(friction, x, i, force[i].norm(), at_rest);
-    }
-    for (int t = 0; t < int(cloth_friction.ties.size()); ++t) {
-        const double press = cloth_forces_[t].force.norm();
-        if (cloth_friction.ties[t].force > 0)
-            follow(cloth_friction, x, t, press, at_rest);
-        else
-            cloth_friction.ties[t].force = press;
-    }
-}
-
-void ClothProblem::take_up_friction(const Points& x) {
-    renew_friction(x);
-    trusted_ = false;
+void ClothProblem::arrive(const Points& x) {
+    if (!renew_contact(x, node_mass_)) return;
     Eigen::VectorXd g;
     gradient(x, g);
-    take_up(friction, cloth_friction, x, pinned_, g);
+    take_up_forces(x, pinned_, g);
 }
 
-void ClothProblem::touch(const Points& x) {
-    contact_.prepare(x, Eigen::VectorXd::Zero(3 * points()));
-    active_ = contact_.active(x);
-}
+double ClothProblem::value(const Points& x) { return with_contact_value(FreeCloth::value(x), contact().active(x), x); }
 
-void ClothProblem::arrive(const Points& x) {
-    touch(x);
-    if (friction.coefficient == 0 && cloth_friction.coefficient == 0) return;
-    const Stopwatch::Lap lap(contact_.clock());
-    if (cloth_friction.coefficient > 0) match_cloth_friction(x);
-    if (trusted_) {
-        take_up_friction(x);
-        return;
-    }
-    // Near rest friction only gives way where it is more than contact can answer: less than that is friction
-    // too, and forces that follow one another up and down would not come to rest. It grows only where a node would
-    // give way for want of it.
-    near_rest_ = residual_ < (near_rest_ ? friction_off : friction_rest);
-    const bool renew = arrivals_ % renew_every == 0 || residual_ < 0.1 * renewed_at_;
-    ++arrivals_;
-    if (near_rest_ && !rising_) {
-        adapt_friction(x);
-    } else if (renew || near_rest_) {
-        renewed_at_ = residual_;
-        renew_friction(x);
-    }
-}
-
-double ClothProblem::value(const Points& x) {
-    double sum = sheet_value(sheet_, x) + toile::value(*this, node_mass_, x);
-    const Stopwatch::Lap lap(contact_.clock());
-    if (friction.coefficient > 0) sum += toile::value(friction, x);
-    if (cloth_friction.coefficient > 0) sum += toile::value(cloth_friction, x);
-    return sum + contact_.value(contact_.active(x));
-}
-
-void ClothProblem::gradient(const Points& x, Eigen::VectorXd& g) { gradient_with(active_, x, g); }
-
-void ClothProblem::gradient_with(const std::vector<ActivePair>& active, const Points& x, Eigen::VectorXd& g) const {
-    Points sheet(x.size(), Vec3::Zero());
-    sheet_gradient(sheet_, x, sheet);
-    g = flat(sheet);
-    add_gradient(*this, node_mass_, x, g);
-    {
-        const Stopwatch::Lap lap(contact_.clock());
-        if (friction.coefficient > 0) add_gradient(friction, x, g);
-        if (cloth_friction.coefficient > 0) add_gradient(cloth_friction, x, g);
-        contact_.add_gradient(active, g);
-    }
+void ClothProblem::gradient_with(const std::vector<ActivePair>& active, const Points& x, Eigen::VectorXd& g) {
+    FreeCloth::gradient(x, g);
+    add_contact_gradient(active, x, g);
     clear_pinned(g);
 }
 
-void ClothProblem::make_pattern() {
-    std::vector<std::pair<int, int>> pairs;
-    sheet_couplings(sheet_, pairs);
-    couplings(*this, pairs);
-    contact_.couplings(active_, pairs);
-    couplings(cloth_friction, pairs);
-    matrix_ = BlockMatrix(points(), pairs);
-    sheet_slots(sheet_, matrix_);
-    matrix_made_ = true;
-}
-
 BlockMatrix& ClothProblem::hessian(const Points& x, bool exact, bool& pattern_changed) {
-    for (;;) {
-        if (!matrix_made_) {
-            make_pattern();
-            pattern_changed = true;
-        }
-        matrix_.set_zero();
-        bool complete = contact_.add_hessian(x, active_, exact, matrix_);
-        if (cloth_friction.coefficient > 0) complete = add_hessian(cloth_friction, x, exact, matrix_) && complete;
-        if (complete) break;
-        matrix_made_ = false;
-    }
-    sheet_hessian(sheet_, x, exact ? HessianKind::exact : HessianKind::projected, matrix_);
-    add_hessian(*this, x, matrix_);
-    const Stopwatch::Lap lap(contact_.clock());
-    if (friction.coefficient > 0) add_hessian(friction, x, exact, matrix_);
-    return matrix_;
-}
-
-void ClothProblem::multiply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
-    matrix_.multiply(v, product);
-    sheet_beyond_compact(sheet_, v, product);
-    for (int i = 0; i < points(); ++i)
-        if (pinned_[i]) product.segment<3>(3 * i) = v.segment<3>(3 * i);
+    BlockMatrix& h = FreeCloth::hessian(x, exact, pattern_changed);
+    add_body_friction_hessian(x, exact, h);
+    return h;
 }
 
 void ClothProblem::curvature_along(const Points& x, const Eigen::VectorXd& g, const Eigen::VectorXd& d,
@@ -238,39 +107,19 @@ void ClothProblem::curvature_along(const Points& x, const Eigen::VectorXd& g, co
     constexpr double part = 1e-3; // of steps of millimetres: what touches moves by micrometres
     Points near = x;
     flat(near) += part * d;
-    gradient_with(contact_.active(near), near, hd);
+    gradient_with(contact().active(near), near, hd);
     hd = (hd - g) / part;
 }
 
 double ClothProblem::feasible_step(const Points& x, const Eigen::VectorXd& dx, std::vector<double>* shares) {
-    if (contact_.prepare(x, dx)) active_ = contact_.active(x);
-    return contact_.feasible_step(x, dx, nullptr, shares ? &blocking_ : nullptr, shares);
+    return longest_contact_step(x, dx, shares);
 }
-
-std::vector<double> ClothProblem::friction_excess(const Points& x) const {
-    std::vector<double> excess(points(), 0.0);
-    if (friction.coefficient > 0) {
-        const Points normal = contact_.body_forces(active_);
-        for (int i = 0; i < points(); ++i) {
-            const double limit = friction.coefficient * normal[i].norm();
-            excess[i] = std::max(0.0, friction_force(friction, x, i).norm() - limit);
-        }
-    }
-    for (int t = 0; t < int(cloth_friction.ties.size()); ++t) {
-        const PairForce& f = cloth_forces_[t];
-        const double limit = cloth_friction.coefficient * f.force.norm();
-        const double over = friction_force(cloth_friction, x, t).norm() - limit;
-        if (!(over > 0)) continue;
-        for (int k = 0; k < 4; ++k) excess[f.point[k]] += std::abs(f.weight[k]) * over;
-    }
-    return excess;
-}
-
-double ClothProblem::unanswered(const Points&, int i) const { return excess_[i]; }
 
 double ClothProblem::residual(const Points& x, const Eigen::VectorXd& g) {
     excess_ = friction_excess(x);
-    return residual_ = NodeProblem::residual(x, g);
+    const double r = NodeProblem::residual(x, g);
+    note_residual(r);
+    return r;
 }
 
 } // namespace toile

@@ -60,8 +60,8 @@ std::string method_sentence(const DrapeFacts& f, const Garment& g) {
                          : f.method == Method::springs_biphasic ? "springs become stiffer at the fabric's limits"
                                                                 : "nothing held strains within the fabric's limits";
     if (f.method == Method::inextensible)
-        limits = text("%d of %d edges lie along warp or weft and were brought back to their lengths in every step, before contact",
-                      int(yarn_edges(g).size()), g.edges.size());
+        limits = text("%d of %d edges lie along warp or weft and kept their lengths%s", int(yarn_edges(g).size()), g.edges.size(),
+                      f.contact.response == ContactResponse::barrier ? "" : " in every step before contact");
     if (f.kept_strain)
         limits = text("triangles keep their shape on the midpoints of their edges, where the largest strain at the end is %.2g %%; "
                       "strains elsewhere in this report are of the mesh through the means of their corners",
@@ -176,7 +176,7 @@ std::vector<std::string> decisions(const DrapeFacts& f, const Garment& g, const 
                                    const PanelFabrics& fabrics, const TriMesh& body) {
     std::vector<std::string> out{level_sentence(f), contact_sentence(f), friction_sentence(f, g.node_count),
                                  growth_sentence(f)};
-    if (moves(f.method)) out.push_back(method_sentence(f, g));
+    if (f.method != Method::equilibrium) out.push_back(method_sentence(f, g));
     if (f.contact.response != ContactResponse::barrier) out.push_back(response_sentence(f));
     if (f.motion) out.push_back(motion_sentence(f));
     if (f.untangled > 0)
@@ -200,7 +200,7 @@ std::vector<std::string> decisions(const DrapeFacts& f, const Garment& g, const 
         out.push_back(text("%d stitches to the inside of an edge stayed springs, the widest %.2g mm open; "
                            "triangles that such a stitch joins do not touch each other",
                            f.inner_stitches, 1e3 * f.inner_gap));
-    limit_sentences(!moves(f.method), g, x, fabrics, out);
+    limit_sentences(f.method == Method::equilibrium, g, x, fabrics, out);
     if (!body.triangles.empty())
         out.push_back(text("the fabric's right side looks away from the body on %.1f %% of the area",
                            100 * right_side_out(g, x, body)));

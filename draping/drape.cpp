@@ -187,14 +187,14 @@ const char* to_string(DrapeStatus s) {
 }
 
 ContactResponse response_of(const DrapeOptions& o) {
-    const ContactResponse usual = is_animated(o) ? ContactResponse::impulse : usual_response(o.method);
-    const ContactResponse response = o.contact.value_or(usual);
-    if ((moves(o.method) || is_animated(o)) && response == ContactResponse::barrier)
-        throw std::invalid_argument(std::string(is_animated(o) ? "an animation" : "the method ") +
-                                    (is_animated(o) ? "" : to_string(o.method)) + " moves cloth in time, which the contact "
-                                    "barrier cannot answer: it needs constraint, penalty, impulse or rigid");
+    const ContactResponse response = o.contact.value_or(is_animated(o) ? ContactResponse::impulse : ContactResponse::barrier);
+    if (is_animated(o) && response == ContactResponse::barrier)
+        throw std::invalid_argument("an animation moves cloth in time, which the contact barrier cannot answer: it needs "
+                                    "constraint, penalty, impulse or rigid");
     return response;
 }
+
+bool moves(const DrapeOptions& o) { return !settles(o.method) || response_of(o) != ContactResponse::barrier; }
 
 DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabrics& fabrics,
                   const DrapeOptions& options) {

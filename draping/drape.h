@@ -2,6 +2,7 @@
 #pragma once
 
 #include "draping/contact/friction.h"
+#include "draping/contact/response_kind.h"
 #include "draping/landmarks.h"
 #include "draping/measure.h"
 #include "draping/method.h"
@@ -42,12 +43,12 @@ struct DrapeOptions {
     double cloth_friction = -1;     ///< of cloth on cloth; the same
     double gravity = 9.81;          ///< m/s2, along -y
     /// What levels come to rest by, and with. Placing and sewing always have equilibrium and the barrier, so that they start
-    /// without crossings. No response: the usual one of the method.
+    /// without crossings. No response: the barrier.
     Method method = Method::equilibrium;
     MethodOptions method_options;
     std::optional<ContactResponse> contact;
     AnimateOptions animation;
-    int max_iterations = 5000;      ///< Newton iterations, or steps of a motion, on all levels together
+    int max_iterations = 5000;      ///< Newton iterations, or four steps of a motion each, on all levels together
     double max_seconds = 1e9;       ///< wall time after which the state reached is returned with status limit
     double max_memory = 1e18;       ///< bytes of the process; the same happens when they or the next level come near
     std::vector<std::string> hold;  ///< edges whose hooks stay on to the end: words of labels_called()
@@ -98,8 +99,11 @@ struct MotionReport {
     double speed = 0;       ///< m/s, of the fastest node at the end
 };
 
-/// The response that acts. Throws std::invalid_argument when the barrier is asked for with what moves in time.
+/// The response that acts: the barrier, of an animation impulses, unless another is named. Throws std::invalid_argument when
+/// the barrier is asked for with an animation.
 ContactResponse response_of(const DrapeOptions& options);
+/// Whether the cloth moves in time.
+bool moves(const DrapeOptions& options);
 
 /// A drape and by how much it met each promise.
 struct DrapeResult {
@@ -126,7 +130,7 @@ struct DrapeResult {
 
 /// Sews and drapes: sew, weld, grow, settle and refine on every level from coarse to fine, prove. A seam that
 /// cannot be closed ends it: status stalled, and the garment is the coarsest, open where it would not close. `fabrics` has one
-/// entry per panel. Throws std::runtime_error only for input that check() would have refused, and as response_of() does.
+/// entry per panel. Throws std::runtime_error only for input that check() would have refused.
 DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabrics& fabrics,
                   const DrapeOptions& options);
 /// The same for stage(pattern, flat).

@@ -20,73 +20,71 @@ namespace toile {
 
 namespace {
 
+constexpr double line_stiffness = 1e4; // N/m, of yarns before their tension has taken it up
 constexpr double inextensible_step = 5e-4; // s: lines that the body stretches pull with a hundred times what hangs from them
 
-std::unique_ptr<NodeProblem> free_cloth(std::unique_ptr<Energy> energy, std::vector<double> mass,
-                                        const std::vector<char>& pinned, bool projected = true) {
-    auto problem = std::make_unique<FreeCloth>(std::move(energy), std::move(mass), projected);
-    for (std::size_t i = 0; i < pinned.size(); ++i)
-        if (pinned[i]) problem->pin(int(i));
-    return problem;
+std::vector<Spring> springs_of(Method method, const Garment& garment, const std::vector<Fabric>& fabrics,
+                               const MethodOptions& options) {
+    return mesh_springs(garment, fabrics,
+                        {options.spring_damping, method == Method::springs_biphasic ? options.beyond : 1});
 }
 
-std::unique_ptr<Stepper> spring_stepper(Method method, const Garment& garment, const std::vector<Fabric>& fabrics,
-                                        const std::vector<char>& pinned, Response& response, StepOptions step,
-                                        const MethodOptions& options) {
-    const SpringMeshOptions how{options.spring_damping, method == Method::springs_biphasic ? options.beyond : 1};
-    const std::vector<Spring> springs = mesh_springs(garment, fabrics, how);
-    auto problem = free_cloth(std::make_unique<Springs>(springs), node_masses(garment, fabrics), pinned);
-    if (method == Method::springs_implicit || method == Method::springs_biphasic) {
-        if (options.time_step > 0) step.time_step = options.time_step;
-        return std::make_unique<ImplicitStepper>(std::move(problem), response, step);
+/// What a stepper is made of beside the model.
+struct Steps {
+    Method method;
+    const Garment& garment;
+    const std::vector<Fabric>& fabrics;
+    const std::vector<char>& pinned;
+    Response& response;
+    StepOptions step;
+    const MethodOptions& options;
+
+    template <class Model> std::unique_ptr<NodeProblem> problem(std::unique_ptr<Model> model) const {
+        const bool projected = method != Method::triangles || options.projected;
+        auto cloth = std::make_unique<FreeCloth>(std::move(model), node_masses(garment, fabrics), projected);
+        for (std::size_t i = 0; i < pinned.size(); ++i)
+            if (pinned[i]) cloth->pin(int(i));
+        return cloth;
     }
-    step.time_step = std::max(step.time_step, options.time_step);
-    std::unique_ptr<ExplicitStepper> stepper;
-    if (method == Method::springs_limited)
-        stepper = std::make_unique<LimitedStepper>(std::move(problem), springs, response, step, options.limits);
-    else
-        stepper = std::make_unique<ExplicitStepper>(std::move(problem), response, step);
-    stepper->substep = options.time_step;
-    return stepper;
-}
 
-std::unique_ptr<Stepper> triangle_stepper(Method method, const Garment& garment, const std::vector<Fabric>& fabrics,
-                                          const std::vector<char>& pinned, Response& response, StepOptions step,
-                                          const MethodOptions& options) {
-    if (options.time_step > 0) step.time_step = options.time_step;
-    auto model = std::make_unique<TriangleCloth>(garment, fabrics);
-    const TriangleCloth& energy = *model;
-    auto problem = free_cloth(std::move(model), node_masses(garment, fabrics), pinned, options.projected);
-    if (method == Method::xpbd) return std::make_unique<XpbdStepper>(std::move(problem), energy, response, step);
-    return std::make_unique<ImplicitStepper>(std::move(problem), response, step);
-}
+    std::unique_ptr<Stepper> implicit() const {
+        return std::make_unique<ImplicitStepper>(problem(make_energy(method, garment, fabrics, options)), response, step);
+    }
 
-std::unique_ptr<Stepper> projective_stepper(const Garment& garment, const std::vector<Fabric>& fabrics,
-                                            const std::vector<char>& pinned, Response& response, StepOptions step,
-                                            const MethodOptions& options) {
-    if (options.time_step > 0) step.time_step = options.time_step;
-    auto model = std::make_unique<ProjectiveCloth>(garment, fabrics);
-    const ProjectiveCloth& energy = *model;
-    auto problem = free_cloth(std::move(model), node_masses(garment, fabrics), pinned);
-    return std::make_unique<ProjectiveStepper>(std::move(problem), energy, response, step);
-}
+    std::unique_ptr<Stepper> explicit_steps(StepOptions whole) const {
+        const std::vector<Spring> springs = springs_of(method, garment, fabrics, options);
+        auto cloth = problem(std::make_unique<Springs>(springs));
+        std::unique_ptr<ExplicitStepper> stepper;
+        if (method == Method::springs_limited)
+            stepper = std::make_unique<LimitedStepper>(std::move(cloth), springs, response, whole, options.limits);
+        else
+            stepper = std::make_unique<ExplicitStepper>(std::move(cloth), response, whole);
+        stepper->substep = options.time_step;
+        return stepper;
+    }
 
-std::unique_ptr<Stepper> inextensible_stepper(const Garment& garment, const std::vector<Fabric>& fabrics,
-                                              const std::vector<char>& pinned, Response& response, StepOptions step,
-                                              const MethodOptions& options) {
-    step.time_step = options.time_step > 0 ? options.time_step : inextensible_step;
-    auto cloth = std::make_unique<YarnCloth>(garment, fabrics, yarn_edges(garment));
-    Tension& tension = cloth->tension;
-    auto problem = free_cloth(std::move(cloth), node_masses(garment, fabrics), pinned);
-    return std::make_unique<InextensibleStepper>(std::move(problem), tension, response, step);
-}
+    std::unique_ptr<Stepper> xpbd() const {
+        auto model = std::make_unique<TriangleCloth>(garment, fabrics);
+        const TriangleCloth& energy = *model;
+        return std::make_unique<XpbdStepper>(problem(std::move(model)), energy, response, step);
+    }
 
-std::unique_ptr<Stepper> nonconforming_stepper(const Garment& garment, const std::vector<Fabric>& fabrics,
-                                               const std::vector<char>& pinned, Response& response, StepOptions step,
-                                               const MethodOptions& options) {
-    if (options.time_step > 0) step.time_step = options.time_step;
-    return std::make_unique<NonconformingStepper>(garment, fabrics, node_masses(garment, fabrics), pinned, response, step);
-}
+    std::unique_ptr<Stepper> projective() const {
+        auto model = std::make_unique<ProjectiveCloth>(garment, fabrics);
+        const ProjectiveCloth& energy = *model;
+        return std::make_unique<ProjectiveStepper>(problem(std::move(model)), energy, response, step);
+    }
+
+    std::unique_ptr<Stepper> inextensible() const {
+        auto model = std::make_unique<YarnCloth>(garment, fabrics, yarn_edges(garment));
+        Tension& tension = model->tension;
+        return std::make_unique<InextensibleStepper>(problem(std::move(model)), tension, response, step);
+    }
+
+    std::unique_ptr<Stepper> nonconforming() const {
+        return std::make_unique<NonconformingStepper>(garment, fabrics, node_masses(garment, fabrics), pinned, response, step);
+    }
+};
 
 } // namespace
 
@@ -122,20 +120,61 @@ Method method_called(const std::string& name) {
     throw std::invalid_argument("there is no method '" + name + "', the methods are " + names);
 }
 
+bool settles(Method m) {
+    switch (m) {
+    case Method::equilibrium:
+    case Method::springs_implicit:
+    case Method::springs_biphasic:
+    case Method::triangles:
+    case Method::projective:
+    case Method::inextensible: return true;
+    case Method::springs_explicit:
+    case Method::springs_limited:
+    case Method::xpbd:
+    case Method::nonconforming: break;
+    }
+    return false;
+}
+
+std::unique_ptr<Energy> make_energy(Method method, const Garment& garment, const std::vector<Fabric>& fabrics,
+                                    const MethodOptions& options) {
+    switch (method) {
+    case Method::equilibrium: return std::make_unique<SheetEnergy>(make_sheet(garment, fabrics));
+    case Method::springs_implicit:
+    case Method::springs_biphasic: return std::make_unique<Springs>(springs_of(method, garment, fabrics, options));
+    case Method::triangles: return std::make_unique<TriangleCloth>(garment, fabrics);
+    case Method::projective: return std::make_unique<ProjectiveCloth>(garment, fabrics);
+    case Method::inextensible: {
+        auto yarns = std::make_unique<YarnCloth>(garment, fabrics, yarn_edges(garment));
+        yarns->tension.stiffness.assign(yarns->tension.lines().size(), line_stiffness);
+        return yarns;
+    }
+    case Method::springs_explicit:
+    case Method::springs_limited:
+    case Method::xpbd:
+    case Method::nonconforming: break;
+    }
+    throw std::invalid_argument(std::string("the method ") + to_string(method) + " finds no rest by its energy");
+}
+
 std::unique_ptr<Stepper> make_stepper(Method method, const Garment& garment, const std::vector<Fabric>& fabrics,
                                       const std::vector<char>& pinned, Response& response, const StepOptions& step,
                                       const MethodOptions& options) {
+    Steps steps{method, garment, fabrics, pinned, response, step, options};
+    if (options.time_step > 0) steps.step.time_step = options.time_step;
+    StepOptions whole = step; // of explicit methods, in substeps as they are given
+    whole.time_step = std::max(step.time_step, options.time_step);
+    if (method == Method::inextensible && !(options.time_step > 0)) steps.step.time_step = inextensible_step;
     switch (method) {
-    case Method::springs_explicit:
     case Method::springs_implicit:
     case Method::springs_biphasic:
-    case Method::springs_limited:
-        return spring_stepper(method, garment, fabrics, pinned, response, step, options);
-    case Method::triangles:
-    case Method::xpbd: return triangle_stepper(method, garment, fabrics, pinned, response, step, options);
-    case Method::projective: return projective_stepper(garment, fabrics, pinned, response, step, options);
-    case Method::inextensible: return inextensible_stepper(garment, fabrics, pinned, response, step, options);
-    case Method::nonconforming: return nonconforming_stepper(garment, fabrics, pinned, response, step, options);
+    case Method::triangles: return steps.implicit();
+    case Method::springs_explicit:
+    case Method::springs_limited: return steps.explicit_steps(whole);
+    case Method::xpbd: return steps.xpbd();
+    case Method::projective: return steps.projective();
+    case Method::inextensible: return steps.inextensible();
+    case Method::nonconforming: return steps.nonconforming();
     case Method::equilibrium: break;
     }
     throw std::invalid_argument(std::string("the method ") + to_string(method) + " has no steps in time");

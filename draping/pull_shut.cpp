@@ -230,7 +230,7 @@ Sewn pull_shut(DrapeRun& run, const Start& start, const Sewing& way) {
     contact.body.stiffness *= sewing_softness;
     contact.cloth.stiffness *= sewing_softness;
     ClothProblem problem(open, run.fabrics, run.body, contact);
-    problem.sheet().softness = 1.0 / 16;
+    problem.sheet()->softness = 1.0 / 16;
     if (start.lift == 0) problem.hooks = hooks_on(run, open, all_hooked(run), problem);
     for (const auto& [node, place] : pinned_places(run.staging, 0, open)) problem.pin(node);
     Cholesky factor;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/respond.h"
 
+#include "draping/solve/barrier_response.h"
 #include "draping/solve/implicit.h"
 
 #include <algorithm>
@@ -11,6 +12,7 @@ namespace toile {
 namespace {
 
 constexpr double time_step = 2e-3;      // s
+constexpr double barrier_step = 5e-4;   // s: forces that are held from step to step follow stiff cloth the sooner
 constexpr double damping = 10;          // 1/s: falls at 1 m/s, swings die away in half a second
 constexpr double most_motion = 5e-3;    // m in a step
 constexpr double rest_speed = 1e-3;     // m/s
@@ -19,6 +21,7 @@ constexpr double repulsion = 1e3;       // N/m, of springs that act by a tenth o
 constexpr double penalty_share = 0.25;  // of m / dt2: a stiffer spring, with its dampers, does not bear such steps
 constexpr double damper_share = 0.05;   // of m / dt
 constexpr double depth = 10e-3;         // m: lists of pairs grow long with it
+constexpr int steps_per_iteration = 4;  // a motion takes more steps than Newton's method
 constexpr ContactOptions no_contact{{1, 0, 0}, {1, 0, 0}, false};
 
 ResponseOptions response_options(const DrapeRun& run, const ClothProblem& problem, double step) {
@@ -40,11 +43,15 @@ ResponseOptions response_options(const DrapeRun& run, const ClothProblem& proble
 
 LevelInMotion::LevelInMotion(const DrapeRun& run, const ClothProblem& at_rest) {
     const MethodOptions& how = run.options.method_options;
-    StepOptions step{time_step, damping, std::min(most_motion, run.edge_length())};
-    if (how.time_step > 0 && !moves(run.options.method)) step.time_step = how.time_step;
-    response = make_response(response_of(run.options), contact_cloth(run.garment), run.body,
-                             response_options(run, at_rest, std::max(step.time_step, how.time_step)));
-    if (moves(run.options.method)) {
+    const bool barrier = response_of(run.options) == ContactResponse::barrier;
+    StepOptions step{barrier ? barrier_step : time_step, damping, std::min(most_motion, run.edge_length())};
+    if (how.time_step > 0 && run.options.method == Method::equilibrium) step.time_step = how.time_step;
+    const ResponseOptions answer = response_options(run, at_rest, std::max(step.time_step, how.time_step));
+    if (barrier)
+        response = barrier_response(contact_cloth(run.garment), run.body, run.contact_options(), answer);
+    else
+        response = make_response(response_of(run.options), contact_cloth(run.garment), run.body, answer);
+    if (run.options.method != Method::equilibrium) {
         stepper = make_stepper(run.options.method, run.garment, run.level_fabrics(), at_rest.pinned(), *response, step, how);
     } else {
         sheet = std::make_unique<ClothProblem>(run.garment, run.level_fabrics(), TriMesh{}, no_contact);
@@ -56,11 +63,11 @@ LevelInMotion::LevelInMotion(const DrapeRun& run, const ClothProblem& at_rest) {
     cloth.x = run.x;
 }
 
-RestResult LevelInMotion::rest(DrapeRun& run, double tolerance, int max_steps, bool last) {
+RestResult LevelInMotion::rest(DrapeRun& run, double tolerance, int iterations, bool last) {
     RestOptions o;
     o.tolerance = tolerance;
     o.speed = last ? rest_speed : passing_speed;
-    o.max_steps = std::min(max_steps, run.iterations_left);
+    o.max_steps = steps_per_iteration * std::min(iterations, run.iterations_left);
     const double from = run.share_begin, span = run.share_end - run.share_begin;
     o.progress = [&, base = run.done](int i, double r) {
         const double within = (base - from) / std::max(span, 1e-9);
@@ -69,7 +76,7 @@ RestResult LevelInMotion::rest(DrapeRun& run, double tolerance, int max_steps, b
     const RestResult r = come_to_rest(*stepper, cloth, response->body(), o);
     run.x = cloth.x;
     run.result.residual = r.residual;
-    run.iterations_left -= r.steps;
+    run.iterations_left -= (r.steps + steps_per_iteration - 1) / steps_per_iteration;
     run.result.levels.back().iterations += r.steps;
     run.result.levels.back().factorisations += r.factorisations;
     run.result.contact.unresolved += r.unresolved;

@@ -20,9 +20,9 @@ struct LevelInMotion {
     /// With the pins and the loads of the problem that it stands in for.
     LevelInMotion(const DrapeRun& run, const ClothProblem& at_rest);
 
-    /// Steps until the cloth is at rest, to `tolerance` on the residual, or `max_steps` are over; `run.x` is then where
-    /// it is. A last pass is to be at rest to 1 mm/s, others to 20.
-    RestResult rest(DrapeRun& run, double tolerance, int max_steps, bool last);
+    /// Steps until the cloth is at rest, to `tolerance` on the residual, or as many as `iterations` are worth are over;
+    /// `run.x` is then where it is. A last pass is to be at rest to 1 mm/s, others to 20.
+    RestResult rest(DrapeRun& run, double tolerance, int iterations, bool last);
 
     /// What touches now, from the pairs that `near` has.
     TouchFacts touch_facts(const Contact& near) const;

@@ -26,10 +26,10 @@ constexpr double coarse_residual = 10;         // to which levels that are not t
 constexpr int untangle_every = 20;             // iterations after which cloth that did not come apart is tried again,
 constexpr int most_untangles = 5;              // in each pass
 constexpr int most_iterations = 3000;          // of the last pass of a level
+constexpr int most_rounds = 20;               // of constraints that take up forces
 constexpr int tight_every = 100;               // iterations after which cloth is looked at that may be too small
 constexpr double too_tight = 0.01;             // m, missing round the garment, of which
 constexpr double tight_gain = 0.1;             // this share has to have gone since, for it to go on
-constexpr int steps_per_iteration = 3;         // a motion takes more steps than Newton's method
 constexpr double coarse_motion_residual = 0.3; // less than the 1 of free fall
 
 /// Takes the cloth apart without regard to its pattern: the body gives way meanwhile, and parts go back as a whole.
@@ -73,7 +73,7 @@ struct TightWatch {
 } // namespace
 
 void soften(const DrapeRun& run, ClothProblem& problem, Loads& loads, double softness) {
-    problem.sheet().softness = softness;
+    problem.sheet()->softness = softness;
     loads.elastics = elastic_segments(run.staging, run.garment);
     for (ElasticSegment& s : loads.elastics) s.stiffness *= softness;
 }
@@ -160,7 +160,10 @@ SettleResult settle_within_limits(DrapeRun& run, ClothProblem& problem, Cholesky
 void settle_level(DrapeRun& run) {
     const auto start = DrapeRun::Clock::now();
     const ContactOptions contact = run.contact_options();
-    ClothProblem problem(run.garment, run.level_fabrics(), run.body, contact);
+    const PanelFabrics fabrics = run.level_fabrics();
+    const Method method = moves(run.options) ? Method::equilibrium : run.options.method;
+    ClothProblem problem(make_energy(method, run.garment, fabrics, run.options.method_options), run.garment, fabrics, run.body,
+                         contact);
     problem.gravity = run.options.gravity;
     add_fixtures(run, problem);
     Cholesky factor;
@@ -169,7 +172,7 @@ void settle_level(DrapeRun& run) {
     if (first) problem.hooks = hooks_on(run, run.garment, all_hooked(run), problem);
     run.begin("settle", 0.85 * std::pow(4.0, run.level) / ((std::pow(4.0, run.levels()) - 1) / 3));
     problem.rest_here(run.x, run.result.friction, run.facts.restarted);
-    problem.sheet().softness = run.facts.restarted ? 1 : first ? 1.0 / 16 : 1.0 / 4;
+    if (problem.sheet()) problem.sheet()->softness = run.facts.restarted ? 1 : first ? 1.0 / 16 : 1.0 / 4;
     bool tangled = true;
     const auto untangle = [&] {
         tangled = !take_apart_or_leave_out(run, problem.contact());
@@ -180,8 +183,8 @@ void settle_level(DrapeRun& run) {
 
     // From this start on a response may take over: the same cloth, in motion.
     std::optional<LevelInMotion> motion;
-    if (response_of(run.options) != ContactResponse::barrier) motion.emplace(run, problem);
-    ClothProblem* const sheet = motion ? motion->sheet.get() : &problem; // null: of a method of its own
+    if (moves(run.options)) motion.emplace(run, problem);
+    ClothProblem* const sheet = motion ? motion->sheet.get() : problem.sheet() ? &problem : nullptr; // null: of another model
     Loads& acting = motion ? motion->stepper->loads() : problem;
 
     struct Pass {
@@ -220,8 +223,7 @@ void settle_level(DrapeRun& run) {
             sheet->limit_strain(last_pass && run.last_level() ? hard_limit : soft_limit);
         if (motion) {
             const bool last = last_pass && run.last_level();
-            rest = motion->rest(run, last ? run.options.tolerance : coarse_motion_residual,
-                                steps_per_iteration * pass.iterations, last);
+            rest = motion->rest(run, last ? run.options.tolerance : coarse_motion_residual, pass.iterations, last);
             if (!rest.broken.empty()) break;
             continue;
         }
@@ -235,7 +237,12 @@ void settle_level(DrapeRun& run) {
         if (tangled && last_pass && !run.stopped && untangle_as_mesh(run)) untangle();
         if (last_pass && run.last_level()) o.progress = [&tight](int i, double) { return !tight.gives_up(i); };
         r = run.settle_some(problem, run.x, factor, o);
-        if (last_pass && run.last_level()) r = settle_within_limits(run, problem, factor, o, r);
+        if (last_pass && run.last_level())
+            for (int k = 0; r.end == SettleEnd::settled && problem.take_up(run.x); ++k) {
+                r = run.settle_some(problem, run.x, factor, o);
+                if (k == most_rounds) r.end = SettleEnd::iterations;
+            }
+        if (sheet && last_pass && run.last_level()) r = settle_within_limits(run, problem, factor, o, r);
     }
     if (!motion) run.result.residual = r.residual;
     ContactReport& report = run.result.contact;

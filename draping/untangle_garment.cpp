@@ -327,7 +327,7 @@ std::vector<char> free_nodes(const Run& run, const Points& x, const std::vector<
 /// cloth rests as it was.
 std::vector<HookSpring> holds(const Run& run, ClothProblem& problem) {
     Points pull(run.start.size(), Vec3::Zero());
-    sheet_gradient(problem.sheet(), run.start, pull);
+    sheet_gradient(*problem.sheet(), run.start, pull);
     const std::vector<double> area = contact_cloth(run.garment).node_area;
     std::vector<HookSpring> springs;
     for (int i = 0; i < run.garment.node_count; ++i) {
@@ -344,7 +344,7 @@ void press_out(Run& run, Points& x, int rings) {
     const Obstacle obstacle = draw_in(run, x);
     const ContactOptions final = run.contact_options();
     ClothProblem problem(run.garment, run.fabrics, obstacle.drawn, while_growing(final));
-    problem.sheet().limits.clear();
+    problem.sheet()->limits.clear();
     problem.contact().leave_out(tangle);
     for (int i = 0; i < run.garment.node_count; ++i)
         if (!free[i]) problem.pin(i);

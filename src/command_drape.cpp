@@ -30,13 +30,10 @@ struct DrapeArguments {
 void refuse_useless_method(const DrapeArguments& a) {
     const DrapeOptions& o = a.job.drape;
     const std::string method = std::string("the method ") + to_string(o.method);
-    if (moves(o.method) && o.contact == ContactResponse::barrier)
-        throw CommandLineError(method + " moves cloth in time, which --contact barrier cannot answer: name constraint, penalty, "
-                                        "impulse (the default) or rigid");
-    if (moves(o.method) && !a.job.avatar_sequence.empty())
+    if (o.method != Method::equilibrium && !a.job.avatar_sequence.empty())
         throw CommandLineError(method + " drapes on a body at rest; a sequence of --avatar-sequence is followed by equilibrium");
-    if (o.method_options.time_step > 0 && !is_animated(o) && response_of(o) == ContactResponse::barrier)
-        throw CommandLineError("--time-step is that of a motion: equilibrium with the contact barrier has no time; name another "
+    if (o.method_options.time_step > 0 && !is_animated(o) && !moves(o))
+        throw CommandLineError("--time-step is that of a motion: " + method + " with the contact barrier has no time; name another "
                                "--method or --contact");
     if (a.sweeps_chosen && o.method != Method::springs_limited)
         throw CommandLineError("--limit and --sweep are about limits on springs, which " + method +
@@ -197,7 +194,8 @@ void add_method(CLI::App& command, DrapeArguments& a) {
         ->check(CLI::IsMember(names).description(""))
         ->type_name(joined_by_bars(names));
     add_duration(command, "time-step", drape.method_options.time_step, 1e-7, 0.1,
-                 "Step of a motion, of explicit methods that of their substeps (default 2 ms; inextensible 0.5 ms; what is stable)");
+                 "Step of a motion, of explicit methods that of their substeps (default 2 ms; inextensible and with the barrier 0.5 ms; what "
+                 "is stable)");
     command
         .add_option_function<std::string>(
             "--limit",
@@ -284,8 +282,7 @@ void add_drape(CLI::App& app, Command& chosen) {
     command
         .add_option_function<std::string>(
             "--contact", [&job](const std::string& name) { job.drape.contact = contact_response(name); },
-            "What answers contact while the cloth comes to rest, by docs/responses.md (default barrier; impulse for methods that "
-            "move)")
+            "What answers contact while the cloth comes to rest, by docs/responses.md (default barrier)")
         ->check(CLI::IsMember({"barrier", "constraint", "penalty", "impulse", "rigid"}).description(""))
         ->type_name("barrier|constraint|penalty|impulse|rigid");
     add_method(command, *a);

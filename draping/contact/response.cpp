@@ -23,7 +23,7 @@ std::unique_ptr<Response> make_response(ContactResponse response, ContactCloth c
     case ContactResponse::rigid: return rigid_response(std::move(cloth), body, options);
     case ContactResponse::barrier: break;
     }
-    throw std::invalid_argument("the barrier is an energy: it corrects no velocities");
+    throw std::invalid_argument("the barrier has to be solved for: it is no correction of velocities");
 }
 
 } // namespace toile

@@ -76,11 +76,14 @@ public:
     virtual Guarantee guarantee() const = 0;
     /// Its forces depend on the start of the step alone: a solver may have them before it finds the candidates.
     virtual bool known_at_start() const { return false; }
+    /// Its forces, all in other_force, are those of a balance at the end of the step: a stepper should hold them in the next
+    /// one, and take them back before the response acts anew.
+    virtual bool lasts() const { return false; }
     virtual const Points& body() const = 0; ///< where its points are
     virtual const ResponseOptions& options() const = 0;
 };
 
-/// Anything but the barrier, which is an energy and no correction (std::invalid_argument). A start that crosses the
+/// Anything but the barrier, which has to be solved for (std::invalid_argument; see solve/barrier_response.h). A start that crosses the
 /// body or itself voids the guarantee.
 std::unique_ptr<Response> make_response(ContactResponse response, ContactCloth cloth, const TriMesh& body,
                                         const ResponseOptions& options);

@@ -21,6 +21,16 @@ public:
     /// Exact, or positive semidefinite.
     virtual void add_hessian(const Points& x, HessianKind kind, BlockMatrix& h) const = 0;
 
+    /// Called when a matrix has a new pattern, before add_hessian fills it: the place to look up where blocks lie.
+    virtual void find_blocks(const BlockMatrix& h) { (void)h; }
+    /// Adds to `product` what add_hessian leaves out of the exact second derivative's product with v, for the sake of a
+    /// cheap factor. Nothing unless a model does.
+    virtual void add_left_out(const Eigen::VectorXd& v, Eigen::VectorXd& product) const { (void)v, (void)product; }
+
+    /// Called at rest. A model with constraints takes up as forces what their stiffness held by being violated, and returns
+    /// whether that was more than it promises: then rest is elsewhere.
+    virtual bool take_up(const Points& x) { return (void)x, false; }
+
     /// Adds the forces of internal friction, N, of nodes that move with the velocities `v` (m/s). None unless a model has any.
     virtual void add_damping(const Points& x, const Points& v, Eigen::VectorXd& force) const {
         (void)x, (void)v, (void)force;

@@ -182,4 +182,10 @@ void sheet_beyond_compact(const Sheet& sheet, const Eigen::VectorXd& v, Eigen::V
     });
 }
 
+void SheetEnergy::add_gradient(const Points& x, Eigen::VectorXd& g) const {
+    Points own(x.size(), Vec3::Zero());
+    sheet_gradient(sheet, x, own);
+    g += flat(own);
+}
+
 } // namespace toile

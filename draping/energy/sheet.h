@@ -5,6 +5,7 @@
 
 #include "draping/algebra/block_matrix.h"
 #include "draping/energy/bend.h"
+#include "draping/energy/energy.h"
 #include "draping/energy/hinge.h"
 #include "draping/energy/strain_limit.h"
 #include "draping/energy/stretch.h"
@@ -44,5 +45,22 @@ void sheet_hessian(const Sheet& sheet, const Points& x, HessianKind kind, BlockM
 
 /// Adds to y what the compact form leaves out of the product of the second derivative with v.
 void sheet_beyond_compact(const Sheet& sheet, const Eigen::VectorXd& v, Eigen::VectorXd& y);
+
+/// The sheet as any model of cloth.
+class SheetEnergy final : public Energy {
+public:
+    explicit SheetEnergy(Sheet s) : sheet(std::move(s)) {}
+
+    Sheet sheet;
+
+    double value(const Points& x) const override { return sheet_value(sheet, x); }
+    void add_gradient(const Points& x, Eigen::VectorXd& g) const override;
+    void couplings(std::vector<std::pair<int, int>>& pairs) const override { sheet_couplings(sheet, pairs); }
+    void add_hessian(const Points& x, HessianKind kind, BlockMatrix& h) const override { sheet_hessian(sheet, x, kind, h); }
+    void find_blocks(const BlockMatrix& h) override { sheet_slots(sheet, h); }
+    void add_left_out(const Eigen::VectorXd& v, Eigen::VectorXd& product) const override {
+        sheet_beyond_compact(sheet, v, product);
+    }
+};
 
 } // namespace toile

@@ -2,6 +2,7 @@
 #include "draping/energy/tension.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace toile {
 
@@ -48,6 +49,16 @@ void Tension::add_hessian(const Points& x, HessianKind kind, BlockMatrix& h) con
         h.add_diagonal(high, block);
         h.add_off_diagonal(low, h.find(high, low), -block);
     }
+}
+
+bool Tension::take_up(const Points& x) {
+    double most = 0;
+    for (std::size_t k = 0; k < lines_.size(); ++k) {
+        const double c = violated(int(k), x);
+        newtons[k] += stiffness[k] * c;
+        most = std::max(most, std::abs(c) / lines_[k].length);
+    }
+    return most > kept;
 }
 
 } // namespace toile

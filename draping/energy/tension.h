@@ -37,6 +37,10 @@ public:
     void couplings(std::vector<std::pair<int, int>>& pairs) const override;
     /// Projected: what turns lines that push is left out.
     void add_hessian(const Points& x, HessianKind kind, BlockMatrix& h) const override;
+    /// Tensions become what lines pull with at x (the method of multipliers); whether a strain is more than `kept`.
+    bool take_up(const Points& x) override;
+
+    static constexpr double kept = 1e-6; ///< strain
 
 private:
     double violated(int k, const Points& x) const { return violation(lines_[k], target[k], x); }

@@ -33,6 +33,7 @@ public:
     void couplings(std::vector<std::pair<int, int>>& pairs) const override;
     /// Projected: stress that pushes is left out of what turns a triangle, and shear has the part of its slope alone.
     void add_hessian(const Points& x, HessianKind kind, BlockMatrix& h) const override;
+    bool take_up(const Points& x) override { return tension.take_up(x); }
 
 private:
     std::vector<GrainTriangle> triangles_;

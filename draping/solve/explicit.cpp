@@ -77,8 +77,10 @@ void ExplicitStepper::go_on(const Moving& cloth, const Points& body_velocity, Mo
         problem_.arrive(m.x);
         problem_.gradient(m.x, g);
         problem_.damping(m.x, m.v, friction);
-        for (int i = 0; i < n; ++i)
-            m.v[i] = (m.v[i] + h * inverse[i] * (friction - g).segment<3>(3 * i)) / (1 + options_.damping * h);
+        for (int i = 0; i < n; ++i) {
+            const Vec3 force = (friction - g).segment<3>(3 * i) + lasting(cloth, i);
+            m.v[i] = (m.v[i] + h * inverse[i] * force) / (1 + options_.damping * h);
+        }
         hold_touches(cloth, m.v, body_velocity, m.impulse);
         for (int i = 0; i < n; ++i) m.x[i] += h * m.v[i];
         constrain(m.x, m.v, h);

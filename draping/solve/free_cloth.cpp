@@ -12,15 +12,26 @@ void FreeCloth::gradient(const Points& x, Eigen::VectorXd& g) {
     clear_pinned(g);
 }
 
+void FreeCloth::make_pattern() {
+    std::vector<std::pair<int, int>> pairs;
+    energy_->couplings(pairs);
+    couplings(*this, pairs);
+    more_couplings(pairs);
+    matrix_ = BlockMatrix(points(), pairs);
+    energy_->find_blocks(matrix_);
+    matrix_made_ = true;
+}
+
 BlockMatrix& FreeCloth::hessian(const Points& x, bool exact, bool& pattern_changed) {
-    if (!matrix_made_) {
-        std::vector<std::pair<int, int>> pairs;
-        energy_->couplings(pairs);
-        couplings(*this, pairs);
-        matrix_ = BlockMatrix(points(), pairs);
-        matrix_made_ = pattern_changed = true;
+    for (;;) {
+        if (!matrix_made_) {
+            make_pattern();
+            pattern_changed = true;
+        }
+        matrix_.set_zero();
+        if (add_more_hessian(x, exact, matrix_)) break;
+        matrix_made_ = false;
     }
-    matrix_.set_zero();
     energy_->add_hessian(x, exact || !projected_ ? HessianKind::exact : HessianKind::projected, matrix_);
     add_hessian(*this, x, matrix_);
     return matrix_;
@@ -28,6 +39,7 @@ BlockMatrix& FreeCloth::hessian(const Points& x, bool exact, bool& pattern_chang
 
 void FreeCloth::multiply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
     matrix_.multiply(v, product);
+    energy_->add_left_out(v, product);
     for (int i = 0; i < points(); ++i)
         if (pinned_[i]) product.segment<3>(3 * i) = v.segment<3>(3 * i);
 }

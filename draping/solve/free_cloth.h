@@ -9,13 +9,14 @@
 namespace toile {
 
 /// Any model of cloth, with loads and pins and without contact of its own, as a problem for a stepper or for settle().
-class FreeCloth final : public NodeProblem {
+class FreeCloth : public NodeProblem {
 public:
     /// `projected`: whether hessian() gives a positive semidefinite stand-in when it is not asked for the exact one.
     FreeCloth(std::unique_ptr<Energy> energy, std::vector<double> node_mass, bool projected = true)
         : NodeProblem(std::move(node_mass)), energy_(std::move(energy)), projected_(projected) {}
 
     const Energy& energy() const { return *energy_; }
+    bool take_up(const Points& x) { return energy_->take_up(x); } ///< see Energy
 
     void arrive(const Points&) override {}
     double value(const Points& x) override;
@@ -28,8 +29,16 @@ public:
     void damping(const Points& x, const Points& v, Eigen::VectorXd& force) override;
     void add_damping_matrix(const Points& x, double factor, BlockMatrix& h) override;
 
-private:
+protected:
+    /// What one who adds to the energy couples, and the blocks of its second derivative; false when the matrix lacks one.
+    virtual void more_couplings(std::vector<std::pair<int, int>>& pairs) const { (void)pairs; }
+    virtual bool add_more_hessian(const Points& x, bool exact, BlockMatrix& h) const { return (void)x, (void)exact, (void)h, true; }
+
     std::unique_ptr<Energy> energy_;
+
+private:
+    void make_pattern();
+
     bool projected_;
     BlockMatrix matrix_;
     bool matrix_made_ = false;

@@ -24,6 +24,10 @@ public:
 protected:
     bool pinned(int node) const { return problem_.pinned()[node]; }
     std::vector<double> inverse_mass() const; ///< 1/kg per node, 0 for pinned ones
+    /// Force of contact on node i that the substeps of a step have, N: what a response that lasts did in the last step.
+    Vec3 lasting(const Moving& cloth, int node) const {
+        return response_.lasts() && !cloth.other_force.empty() ? cloth.other_force[node] : Vec3::Zero();
+    }
     /// Force that the method itself holds node i with, N.
     virtual Vec3 held(int node) const { return (void)node, Vec3::Zero(); }
 

@@ -52,6 +52,7 @@ ResponseDone ProjectiveStepper::step(Moving& cloth, const Points& body_end) {
     for (int k = 0; k < iterations_; ++k) {
         problem_.gradient(x, g);
         g += problem_.mass().cwiseProduct(prepared_share_ * (flat(x) - flat(cloth.x)) - flat(cloth.velocity) / dt);
+        for (int i = 0; i < problem_.points(); ++i) g.segment<3>(3 * i) -= lasting(cloth, i);
         for (int i = 0; i < problem_.points(); ++i)
             if (pinned(i)) g.segment<3>(3 * i).setZero();
         factor_.solve(g, dx);

@@ -39,6 +39,12 @@ ResponseDone go(Moving& cloth, Response& response, const std::vector<double>& in
                 const StepOptions& options, Points v, Points end) {
     const double dt = options.time_step;
     cloth.velocity.resize(cloth.x.size(), Vec3::Zero());
+    if (response.lasts() && !cloth.other_force.empty())
+        for (std::size_t i = 0; i < v.size(); ++i) {
+            const Vec3 held = dt * inverse_mass[i] * cloth.other_force[i];
+            v[i] -= held;
+            end[i] -= held;
+        }
     slow(v, dt, options.max_motion);
     slow(end, dt, options.max_motion);
     const Points without = v;

@@ -70,7 +70,8 @@ ResponseDone respond(Moving& cloth, Response& response, const ResponseStep& step
 
 /// The end of a step whose velocities without contact are `v`: slowed, corrected by the response, and gone. What
 /// contact did is then with the cloth. A method whose velocity at the end of the step is not the one that brought it there
-/// gives it as `end`, which is then slowed and corrected by the same. `inverse_mass`: 1/kg, 0 for what is pinned.
+/// gives it as `end`, which is then slowed and corrected by the same. What a response that lasts did in the last step is in
+/// both, and is taken back before it acts anew. `inverse_mass`: 1/kg, 0 for what is pinned.
 ResponseDone go(Moving& cloth, Response& response, const std::vector<double>& inverse_mass, const Points& body_end,
                 const StepOptions& options, Points v, Points end);
 inline ResponseDone go(Moving& cloth, Response& response, const std::vector<double>& inverse_mass, const Points& body_end,

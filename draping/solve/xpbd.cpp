@@ -50,16 +50,14 @@ struct LoadConstraints {
     }
 };
 
-/// Moves the nodes of one constraint toward what implicit Euler would have; `multiplier` is that of the substep so far.
-void project(const Constraint& c, const std::vector<double>& inverse_mass, double h, double& multiplier, Points& x) {
+/// Moves the nodes of one constraint toward what implicit Euler would have; `force` is what it does by then, N per gradient.
+void project(const Constraint& c, const std::vector<double>& inverse_mass, double h, double& force, Points& x) {
     double mobility = 0;
-    for (int k = 0; k < c.count; ++k) mobility += inverse_mass[c.nodes[k]] * c.gradient[k].squaredNorm();
-    if (!(mobility > 0)) return;
-    const double compliance = 1 / (c.stiffness * h * h);
-    const double most = c.cap * h * h;
-    const double now = std::clamp(multiplier - (c.value + compliance * multiplier) / (mobility + compliance), -most, most);
-    for (int k = 0; k < c.count; ++k) x[c.nodes[k]] += inverse_mass[c.nodes[k]] * (now - multiplier) * c.gradient[k];
-    multiplier = now;
+    for (int k = 0; k < c.count; ++k) mobility += h * h * inverse_mass[c.nodes[k]] * c.gradient[k].squaredNorm();
+    const double now =
+        mobility > 0 ? std::clamp(force - (c.value + force / c.stiffness) / (mobility + 1 / c.stiffness), -c.cap, c.cap) : 0;
+    for (int k = 0; k < c.count; ++k) x[c.nodes[k]] += h * h * inverse_mass[c.nodes[k]] * (now - force) * c.gradient[k];
+    force = now;
 }
 
 } // namespace
@@ -68,19 +66,23 @@ XpbdStepper::XpbdStepper(std::unique_ptr<NodeProblem> problem, const ConstraintE
                          const StepOptions& options, const XpbdOptions& how)
     : ProblemStepper(std::move(problem), response, options), energy_(energy), how_(how) {}
 
-void XpbdStepper::substep(Points& x, Points& v, const std::vector<double>& inverse_mass, double h) const {
+void XpbdStepper::substep(const Moving& cloth, Points& x, Points& v, const std::vector<double>& inverse_mass, double h) {
     const Points start = x;
+    const LoadConstraints loads{problem_};
+    const int own = energy_.constraint_count(), all = int(last_.size());
     for (std::size_t i = 0; i < x.size(); ++i) {
         if (inverse_mass[i] == 0) continue;
-        v[i].y() -= h * problem_.gravity;
+        v[i] += h * (inverse_mass[i] * lasting(cloth, int(i)) - problem_.gravity * Vec3::UnitY());
         x[i] += h * v[i];
     }
-    const LoadConstraints loads{problem_};
-    const int own = energy_.constraint_count(), all = own + loads.count();
-    std::vector<double> multipliers(all, 0.0);
+    for (const Constrained& c : last_)
+        for (int k = 0; k < c.constraint.count; ++k)
+            x[c.constraint.nodes[k]] += h * h * inverse_mass[c.constraint.nodes[k]] * c.force * c.constraint.gradient[k];
     for (int sweep = 0; sweep < how_.sweeps; ++sweep)
-        for (int k = 0; k < all; ++k)
-            project(k < own ? energy_.constraint(k, x) : loads.at(k - own, x), inverse_mass, h, multipliers[k], x);
+        for (int k = 0; k < all; ++k) {
+            last_[k].constraint = k < own ? energy_.constraint(k, x) : loads.at(k - own, x);
+            project(last_[k].constraint, inverse_mass, h, last_[k].force, x);
+        }
     for (std::size_t i = 0; i < x.size(); ++i) v[i] = (x[i] - start[i]) / (h * (1 + options_.damping * h));
 }
 
@@ -89,8 +91,13 @@ ResponseDone XpbdStepper::step(Moving& cloth, const Points& body_end) {
     const double dt = options_.time_step;
     cloth.velocity.resize(n, Vec3::Zero());
     const std::vector<double> inverse = inverse_mass();
+    if (last_.empty() || !(acting_ == problem_)) { // new loads have done nothing yet
+        acting_ = problem_;
+        last_.resize(energy_.constraint_count());
+        last_.resize(energy_.constraint_count() + LoadConstraints{problem_}.count());
+    }
     Points x = cloth.x, v = cloth.velocity;
-    for (int k = 0; k < how_.substeps; ++k) substep(x, v, inverse, dt / how_.substeps);
+    for (int k = 0; k < how_.substeps; ++k) substep(cloth, x, v, inverse, dt / how_.substeps);
     Points mean(n);
     for (std::size_t i = 0; i < n; ++i) mean[i] = (x[i] - cloth.x[i]) / dt;
     return go(cloth, response_, inverse, body_end, options_, mean, v);

@@ -3,7 +3,8 @@
 
 // Position-based dynamics with compliance (Macklin, Mueller, Chentanez: XPBD, 2016), in small steps (Macklin et al.: Small
 // Steps in Physics Simulation, 2019). For previews: information spreads by one node per sweep, so that a sheet of N
-// nodes needs of the order of N^2 sweeps to be as stiff as it is said to be.
+// nodes needs of the order of N^2 sweeps to be as stiff as it is said to be. Multipliers begin a substep as they ended the
+// last one: where nothing moves every constraint then has the force of its energy, which one sweep from zero would not find.
 
 #include "draping/energy/constraint.h"
 #include "draping/solve/problem_stepper.h"
@@ -15,6 +16,12 @@ struct XpbdOptions {
     int sweeps = 1;   ///< over all constraints in each, in their order
 };
 
+/// One constraint, where it acted, and with what.
+struct Constrained {
+    Constraint constraint;
+    double force = 0; ///< its multiplier, N per gradient
+};
+
 class XpbdStepper final : public ProblemStepper {
 public:
     /// `energy` is the problem's.
@@ -24,10 +31,12 @@ public:
     ResponseDone step(Moving& cloth, const Points& body_end) override;
 
 private:
-    void substep(Points& x, Points& v, const std::vector<double>& inverse_mass, double h) const;
+    void substep(const Moving& cloth, Points& x, Points& v, const std::vector<double>& inverse_mass, double h);
 
     const ConstraintEnergy& energy_;
     XpbdOptions how_;
+    Loads acting_;
+    std::vector<Constrained> last_; ///< of energy and loads, in the last substep
 };
 
 } // namespace toile

@@ -44,7 +44,7 @@ TEST_CASE("a sewn sector of a disc is a cone", "[validation]") {
         REQUIRE(!angles.empty());
         for (double a : angles)
             CHECK(a == Approx(half_angle).margin(0.5));
-        CHECK(bend_value(problem.sheet().bending, x) ==
+        CHECK(bend_value(problem.sheet()->bending, x) ==
               Approx(1e-5 * energy * std::log(Sector::outer / Sector::inner)).epsilon(0.03));
     }
 }

@@ -282,7 +282,7 @@ void add_drape(CLI::App& app, Command& chosen) {
     command
         .add_option_function<std::string>(
             "--contact", [&job](const std::string& name) { job.drape.contact = contact_response(name); },
-            "What answers contact while the cloth comes to rest, by docs/responses.md (default barrier)")
+            "What answers contact while the cloth comes to rest, by docs/responses.md (default barrier; impulse with --animate)")
         ->check(CLI::IsMember({"barrier", "constraint", "penalty", "impulse", "rigid"}).description(""))
         ->type_name("barrier|constraint|penalty|impulse|rigid");
     add_method(command, *a);

@@ -249,7 +249,7 @@ Sewn pull_shut(DrapeRun& run, const Start& start, const Sewing& way) {
         }
         return close_open_seams(run, some, problem, sewn.x, factor);
     };
-    if (!problem.sheet().creases.empty()) press_creases(run, problem, sewn.x, factor);
+    if (!problem.sheet()->creases.empty()) press_creases(run, problem, sewn.x, factor);
     const bool some_wait = !way.waiting.seams.empty();
     double gap = close(0);
     if (some_wait) gap = close(1);

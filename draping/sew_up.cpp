@@ -2,6 +2,7 @@
 #include "draping/sew_up.h"
 
 #include "draping/pull_shut.h"
+#include "draping/take_apart.h"
 #include "geometry/text.h"
 
 #include <cmath>
@@ -40,6 +41,13 @@ void note_pushes(DrapeRun& run, const PlacedClear& placed) {
         run.result.decisions.push_back(text("panel \"%s\" was moved %.0f mm %s before sewing",
                                             names[p.panel].c_str(), 1e3 * p.push.norm(),
                                             p.from_body ? "out of the body" : "clear of another panel"));
+}
+
+/// Whether what crosses itself when the seams are joined comes apart again; tried on a copy of the run.
+bool comes_apart(DrapeRun run, const Sewn& sewn) {
+    run.x = merge(run.garment, run.joined, sewn.x);
+    Contact contact(contact_cloth(run.garment), run.body, run.contact_options());
+    return take_apart_or_leave_out(run, contact);
 }
 
 Start place(const DrapeRun& run, double lift, const std::vector<bool>& outside = {}) {
@@ -96,7 +104,7 @@ void sew_coarsest(DrapeRun& run) {
         }
     if (!done && sewn.open && !waiting.seams.empty()) {
         const Start hung = place(run, 0, waiting.outside);
-        done = closes(hung, {true, waiting}) || closes(hung, {true, waiting, true});
+        done = closes(hung, {true, waiting}) || (!sewn.open && comes_apart(run, sewn)) || closes(hung, {true, waiting, true});
     }
     run.x = merge(run.garment, run.joined, sewn.x);
     if (sewn.start.lift != 0)

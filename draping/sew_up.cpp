@@ -12,6 +12,8 @@ namespace toile {
 
 namespace {
 
+constexpr double slipped = 0.02; // m, down while it is sewn
+
 /// Closes the stitches that are as good as closed and leaves the others open.
 void close_what_is_closed(DrapeRun& run, const Garment& open, const Points& x) {
     Garment closable = open;
@@ -48,6 +50,12 @@ bool comes_apart(DrapeRun run, const Sewn& sewn) {
     run.x = merge(run.garment, run.joined, sewn.x);
     Contact contact(contact_cloth(run.garment), run.body, run.contact_options());
     return take_apart_or_leave_out(run, contact);
+}
+
+double mean_height(const Points& x) {
+    double sum = 0;
+    for (const Vec3& p : x) sum += p.y();
+    return sum / double(x.size());
 }
 
 Start place(const DrapeRun& run, double lift, const std::vector<bool>& outside = {}) {
@@ -104,7 +112,11 @@ void sew_coarsest(DrapeRun& run) {
         }
     if (!done && sewn.open && !waiting.seams.empty()) {
         const Start hung = place(run, 0, waiting.outside);
-        done = closes(hung, {true, waiting}) || (!sewn.open && comes_apart(run, sewn)) || closes(hung, {true, waiting, true});
+        done = closes(hung, {true, waiting}) || (!sewn.open && comes_apart(run, sewn));
+        const Sewn quick = sewn;
+        if (!done) closes(hung, {true, waiting, true});
+        // What little holds may slide down while it is sewn for long.
+        if (sewn.way.careful && mean_height(sewn.x) < mean_height(quick.x) - slipped) sewn = quick;
     }
     run.x = merge(run.garment, run.joined, sewn.x);
     if (sewn.start.lift != 0)

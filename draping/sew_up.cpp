@@ -116,7 +116,7 @@ void sew_coarsest(DrapeRun& run) {
         const Sewn quick = sewn;
         if (!done) closes(hung, {true, waiting, true});
         // What little holds may slide down while it is sewn for long.
-        if (sewn.way.careful && mean_height(sewn.x) < mean_height(quick.x) - slipped) sewn = quick;
+        if (sewn.way.careful && !quick.open && mean_height(sewn.x) < mean_height(quick.x) - slipped) sewn = quick;
     }
     run.x = merge(run.garment, run.joined, sewn.x);
     if (sewn.start.lift != 0)

@@ -59,7 +59,7 @@ void rest_without_weight(DrapeRun& run) {
     ClothProblem problem(run.garment, run.level_fabrics(), run.body, run.contact_options());
     add_fixtures(run, problem);
     problem.hooks = hooks_on(run, run.garment, all_hooked(run), problem);
-    run.begin("settle", 0.35 * (1 - share) * std::pow(4.0, run.level) / ((std::pow(4.0, run.levels()) - 1) / 3));
+    run.begin("settle", 0.35 * (1 - share) * run.level_share());
     Cholesky factor;
     const bool clean = clear(run, problem, factor);
     run.stage = "settle";

@@ -12,6 +12,7 @@
 #include "geometry/memory.h"
 
 #include <chrono>
+#include <cmath>
 #include <map>
 
 namespace toile {
@@ -58,6 +59,8 @@ struct DrapeRun {
     }
     int levels() const { return int(staging.levels.size()); }
     double edge_length() const { return staging.levels[level].edge_length; }
+    /// Of the work of all levels, each four times that of the one before.
+    double level_share() const { return std::pow(4.0, level) / ((std::pow(4.0, levels()) - 1) / 3); }
     bool last_level() const { return level + 1 == levels(); }
 
     /// Begins a stage that takes this share of the whole.

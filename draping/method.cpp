@@ -12,6 +12,7 @@
 #include "draping/solve/nonconforming.h"
 #include "draping/solve/projective.h"
 #include "draping/solve/xpbd.h"
+#include "geometry/named.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -112,12 +113,7 @@ const char* to_string(Method m) {
 }
 
 Method method_called(const std::string& name) {
-    std::string names;
-    for (const Method m : all_methods()) {
-        if (name == to_string(m)) return m;
-        names += (names.empty() ? "" : ", ") + std::string(to_string(m));
-    }
-    throw std::invalid_argument("there is no method '" + name + "', the methods are " + names);
+    return named(name, all_methods(), "method", "methods");
 }
 
 bool settles(Method m) {

@@ -170,7 +170,7 @@ void settle_level(DrapeRun& run) {
     const bool first = run.level == 0;
     const std::vector<HookSpring> kept = problem.hooks;
     if (first) problem.hooks = hooks_on(run, run.garment, all_hooked(run), problem);
-    run.begin("settle", 0.85 * std::pow(4.0, run.level) / ((std::pow(4.0, run.levels()) - 1) / 3));
+    run.begin("settle", 0.85 * run.level_share());
     problem.rest_here(run.x, run.result.friction, run.facts.restarted);
     if (problem.sheet()) problem.sheet()->softness = run.facts.restarted ? 1 : first ? 1.0 / 16 : 1.0 / 4;
     bool tangled = true;

@@ -112,11 +112,12 @@ void sew_coarsest(DrapeRun& run) {
         }
     if (!done && sewn.open && !waiting.seams.empty()) {
         const Start hung = place(run, 0, waiting.outside);
-        done = closes(hung, {true, waiting}) || (!sewn.open && comes_apart(run, sewn));
-        const Sewn quick = sewn;
-        if (!done) closes(hung, {true, waiting, true});
-        // What little holds may slide down while it is sewn for long.
-        if (sewn.way.careful && !quick.open && mean_height(sewn.x) < mean_height(quick.x) - slipped) sewn = quick;
+        if (!closes(hung, {true, waiting}) && (sewn.open || !comes_apart(run, sewn))) {
+            const Sewn quick = sewn;
+            closes(hung, {true, waiting, true});
+            // What little holds may slide down while it is sewn for long.
+            if (sewn.way.careful && !quick.open && mean_height(sewn.x) < mean_height(quick.x) - slipped) sewn = quick;
+        }
     }
     run.x = merge(run.garment, run.joined, sewn.x);
     if (sewn.start.lift != 0)

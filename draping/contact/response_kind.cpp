@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/contact/response_kind.h"
 
-#include <stdexcept>
+#include "geometry/named.h"
+
+#include <array>
 
 namespace toile {
 
@@ -17,13 +19,9 @@ const char* to_string(ContactResponse r) {
 }
 
 ContactResponse contact_response(const std::string& name) {
-    std::string names;
-    for (const auto r : {ContactResponse::barrier, ContactResponse::constraint, ContactResponse::penalty,
-                         ContactResponse::impulse, ContactResponse::rigid}) {
-        if (name == to_string(r)) return r;
-        names += (names.empty() ? "" : ", ") + std::string(to_string(r));
-    }
-    throw std::invalid_argument("there is no contact response '" + name + "', the responses are " + names);
+    return named(name, std::array{ContactResponse::barrier, ContactResponse::constraint, ContactResponse::penalty,
+                                  ContactResponse::impulse, ContactResponse::rigid},
+                 "contact response", "responses");
 }
 
 const char* to_string(Guarantee g) {

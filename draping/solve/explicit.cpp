@@ -22,15 +22,6 @@ bool is_finite(const Points& x) {
     return std::all_of(x.begin(), x.end(), [](const Vec3& p) { return p.allFinite(); });
 }
 
-/// The rate of the vector between the places that touch.
-Vec3 rate(const Touch& t, const Points& v, const Points& body_velocity) {
-    Vec3 sum = Vec3::Zero();
-    const int n = int(v.size());
-    for (int k = 0; k < 4; ++k)
-        if (t.weight[k] != 0) sum += t.weight[k] * (t.point[k] < n ? v[t.point[k]] : body_velocity[t.point[k] - n]);
-    return sum;
-}
-
 /// What the response did, with what held the cloth in the substeps.
 void add_held(std::vector<HeldTouch>& touches, const std::vector<HeldTouch>& held) {
     auto old = held.begin();
@@ -91,8 +82,7 @@ ResponseDone ExplicitStepper::step(Moving& cloth, const Points& body_end) {
     const int n = problem_.points();
     const double dt = options_.time_step;
     cloth.velocity.resize(n, Vec3::Zero());
-    Points body_velocity(body_end.size());
-    for (std::size_t i = 0; i < body_end.size(); ++i) body_velocity[i] = (body_end[i] - response_.body()[i]) / dt;
+    const Points body_velocity = body_velocities(response_, body_end, dt);
 
     if (stable_ == 0) stable_ = stable_substep(cloth.x);
     double wanted = substep > 0 ? substep : stable_;

@@ -25,26 +25,11 @@ bool cut_to_cone(Touch& t, double coefficient) {
 
 HeldTouches::HeldTouches(Moving& cloth, const Response& response, const std::vector<double>& inverse_mass,
                          const Points& body_end, double time_step)
-    : cloth_(cloth), inverse_mass_(inverse_mass), body_start_(response.body()), body_end_(body_end), dt_(time_step),
+    : cloth_(cloth), inverse_mass_(inverse_mass), body_velocity_(body_velocities(response, body_end, time_step)), dt_(time_step),
       friction_(response.options().body_friction), known_at_start_(response.known_at_start()) {}
 
 Mat3 HeldTouches::Hold::matrix(const Vec3& n) const {
     return along * Mat3::Identity() + (normal - along) * n * n.transpose();
-}
-
-Vec3 HeldTouches::body_rate(int point) const {
-    const int i = point - int(inverse_mass_.size());
-    return (body_end_[i] - body_start_[i]) / dt_;
-}
-
-/// Rate of the vector between the places that touch.
-Vec3 HeldTouches::rate(const Touch& t, const Points& v) const {
-    Vec3 sum = Vec3::Zero();
-    for (int k = 0; k < 4; ++k) {
-        const int i = t.point[k];
-        if (t.weight[k] != 0) sum += t.weight[k] * (is_node(i) ? v[i] : body_rate(i));
-    }
-    return sum;
 }
 
 void HeldTouches::find_holds(const std::vector<double>& stiffness, double share) {
@@ -63,7 +48,7 @@ void HeldTouches::find_holds(const std::vector<double>& stiffness, double share)
         if (!h.slides) continue;
         // Near its stop, friction is a damper that gives Coulomb's force at the speed of the last step: the force
         // itself, whose direction turns at once, would keep the cloth moving to and fro.
-        const Vec3 sliding = along_face(h.touch, rate(h.touch, cloth_.velocity));
+        const Vec3 sliding = along_face(h.touch, rate(h.touch, cloth_.velocity, body_velocity_));
         const double normal = h.touch.force.dot(h.touch.normal), damper = dt_ * friction_ * normal / sliding.norm();
         h.touch.force = normal * h.touch.normal;
         const bool far_from_stop = damper * mobility < stopping;
@@ -78,7 +63,7 @@ void HeldTouches::add(BlockMatrix& a, Eigen::VectorXd& momentum) const {
         const Mat3 held = hold_[touch].matrix(t.normal);
         Vec3 body = Vec3::Zero(); // the part of the rate that is the body's
         for (int k = 0; k < 4; ++k)
-            if (!is_node(t.point[k]) && t.weight[k] != 0) body += t.weight[k] * body_rate(t.point[k]);
+            if (!is_node(t.point[k]) && t.weight[k] != 0) body += t.weight[k] * body_velocity_[t.point[k] - int(inverse_mass_.size())];
         for (int k = 0; k < 4; ++k) {
             const int i = t.point[k];
             if (!is_node(i)) continue;
@@ -104,7 +89,7 @@ bool HeldTouches::let_go(const Points& v, bool last) {
     for (std::size_t k = 0; k < cloth_.touches.size(); ++k) {
         HeldTouch h = cloth_.touches[k];
         Touch now = h.touch;
-        now.force -= hold_[k].matrix(now.normal) / dt_ * rate(now, v);
+        now.force -= hold_[k].matrix(now.normal) / dt_ * rate(now, v, body_velocity_);
         if (!(now.force.dot(now.normal) > 0)) {
             changed = true;
             continue;
@@ -123,7 +108,7 @@ bool HeldTouches::let_go(const Points& v, bool last) {
     if (changed && !last) return true;
     for (std::size_t k = 0; k < cloth_.touches.size(); ++k) {
         HeldTouch& h = cloth_.touches[k];
-        if (h.slides && !h.began) h.slides = along_face(h.touch, rate(h.touch, v)).norm() > stuck;
+        if (h.slides && !h.began) h.slides = along_face(h.touch, rate(h.touch, v, body_velocity_)).norm() > stuck;
         h.touch.force = force[k];
     }
     return false;
@@ -145,7 +130,7 @@ void HeldTouches::take_up(const ResponseDone& done, const Points& v) {
             h.began = old->began;
             ++old;
         } else {
-            h.slides = h.began = !now.welded && along_face(now, rate(now, v)).norm() > stuck;
+            h.slides = h.began = !now.welded && along_face(now, rate(now, v, body_velocity_)).norm() > stuck;
         }
         if (h.touch.force.dot(h.touch.normal) > 0) all.push_back(h);
     }
@@ -159,6 +144,32 @@ void HeldTouches::take_up(const ResponseDone& done, const Points& v) {
         const double most = std::max(2 * last[i].norm(), inverse_mass_[i] > 0 ? 9.81 / inverse_mass_[i] : 0.0);
         if (f.norm() > most) f *= most / f.norm();
     }
+}
+
+ResponseDone step_with_touches(Moving& cloth, Response& response, const std::vector<double>& inverse_mass, const Points& body_end,
+                               const StepOptions& options, const std::function<Points(HeldTouches&)>& solve, Points& v) {
+    const std::size_t n = cloth.x.size();
+    const double dt = options.time_step;
+    cloth.velocity.resize(n, Vec3::Zero());
+    cloth.other_force.resize(n, Vec3::Zero());
+    HeldTouches touches(cloth, response, inverse_mass, body_end, dt);
+    const ResponseStep seen{dt, cloth.x, cloth.velocity, inverse_mass, body_end};
+    ResponseDone done;
+    if (response.known_at_start()) {
+        v = cloth.velocity;
+        done = respond(cloth, response, seen, v);
+        touches.take_up(done, v);
+        v = solve(touches);
+        slow(v, dt, options.max_motion);
+    } else {
+        v = solve(touches);
+        for (std::size_t i = 0; i < n; ++i) // what the response is to do anew
+            v[i] -= dt * inverse_mass[i] * cloth.other_force[i];
+        slow(v, dt, options.max_motion);
+        done = respond(cloth, response, seen, v);
+        touches.take_up(done, v);
+    }
+    return done;
 }
 
 } // namespace toile

@@ -8,6 +8,8 @@
 #include "draping/algebra/block_matrix.h"
 #include "draping/solve/stepper.h"
 
+#include <functional>
+
 namespace toile {
 
 class HeldTouches {
@@ -39,16 +41,19 @@ private:
     };
 
     bool is_node(int point) const { return point < int(inverse_mass_.size()); }
-    Vec3 rate(const Touch& t, const Points& v) const;
-    Vec3 body_rate(int point) const;
 
     Moving& cloth_;
     const std::vector<double>& inverse_mass_;
-    Points body_start_;
-    const Points& body_end_;
+    Points body_velocity_;
     double dt_, friction_;
     bool known_at_start_;
     std::vector<Hold> hold_; ///< of each touch
 };
+
+/// One step of `cloth`: `solve` returns the velocities of the nodes with what touched held, and the response corrects them, or
+/// acts before when its forces are known at the start. What the nodes have left to go is for the caller to do: `v` receives their
+/// velocities. `inverse_mass` as above; `options.damping` is not looked at.
+ResponseDone step_with_touches(Moving& cloth, Response& response, const std::vector<double>& inverse_mass, const Points& body_end,
+                               const StepOptions& options, const std::function<Points(HeldTouches&)>& solve, Points& v);
 
 } // namespace toile

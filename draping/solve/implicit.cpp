@@ -58,31 +58,13 @@ Points ImplicitStepper::candidate(Moving& cloth, HeldTouches& touches) {
 }
 
 ResponseDone ImplicitStepper::step(Moving& cloth, const Points& body_end) {
-    const std::size_t n = cloth.x.size();
-    const double dt = options_.time_step;
-    cloth.velocity.resize(n, Vec3::Zero());
-    cloth.other_force.resize(n, Vec3::Zero());
-    const std::vector<double> inverse = inverse_mass();
-    HeldTouches touches(cloth, response_, inverse, body_end, dt);
-    const ResponseStep seen{dt, cloth.x, cloth.velocity, inverse, body_end};
-    ResponseDone done;
-    Points v = cloth.velocity;
-    if (response_.known_at_start()) {
-        done = respond(cloth, response_, seen, v);
-        touches.take_up(done, v);
-        v = candidate(cloth, touches);
-        constrain(cloth, v);
-        slow(v, dt, options_.max_motion);
-    } else {
-        v = candidate(cloth, touches);
-        constrain(cloth, v);
-        for (std::size_t i = 0; i < n; ++i) // what the response is to do anew
-            v[i] -= dt * inverse[i] * cloth.other_force[i];
-        slow(v, dt, options_.max_motion);
-        done = respond(cloth, response_, seen, v);
-        touches.take_up(done, v);
-    }
-    for (std::size_t i = 0; i < n; ++i) cloth.x[i] += dt * v[i];
+    Points v;
+    const ResponseDone done = step_with_touches(cloth, response_, inverse_mass(), body_end, options_, [&](HeldTouches& touches) {
+        Points wanted = candidate(cloth, touches);
+        constrain(cloth, wanted);
+        return wanted;
+    }, v);
+    for (std::size_t i = 0; i < cloth.x.size(); ++i) cloth.x[i] += options_.time_step * v[i];
     cloth.velocity = std::move(v);
     return done;
 }

@@ -64,6 +64,7 @@ void NonconformingStepper::find_load_stiffness(const Points& x) {
 Points NonconformingStepper::candidate(const Moving& cloth, HeldTouches& touches) {
     const std::size_t n = cloth.x.size();
     const double dt = options_.time_step;
+    start_at(cloth);
     motion_options_.time_step = dt;
     motion_options_.damping = options_.damping;
     motion_options_.drawn_in = drawn_in;
@@ -85,30 +86,15 @@ Points NonconformingStepper::candidate(const Moving& cloth, HeldTouches& touches
 }
 
 ResponseDone NonconformingStepper::step(Moving& cloth, const Points& body_end) {
-    const std::size_t n = cloth.x.size();
-    const double dt = options_.time_step;
-    cloth.velocity.resize(n, Vec3::Zero());
-    cloth.other_force.resize(n, Vec3::Zero());
-    start_at(cloth);
-    HeldTouches touches(cloth, response_, inverse_mass_, body_end, dt);
-    const ResponseStep seen{dt, cloth.x, cloth.velocity, inverse_mass_, body_end};
-    ResponseDone done;
-    Points v = cloth.velocity;
-    if (response_.known_at_start()) {
-        done = respond(cloth, response_, seen, v);
-        touches.take_up(done, v);
-        v = candidate(cloth, touches);
-        slow(v, dt, options_.max_motion);
-    } else {
-        v = candidate(cloth, touches);
-        for (std::size_t i = 0; i < n; ++i) // what the response is to do anew
-            v[i] -= dt * inverse_mass_[i] * cloth.other_force[i];
-        slow(v, dt, options_.max_motion);
-        done = respond(cloth, response_, seen, v);
-        const Points last = cloth.other_force;
-        touches.take_up(done, v);
-        for (std::size_t i = 0; i < n; ++i) cloth.other_force[i] = last[i] + taken_up * (cloth.other_force[i] - last[i]);
-    }
+    const Points last = cloth.other_force;
+    Points v;
+    const ResponseDone done = step_with_touches(cloth, response_, inverse_mass_, body_end, options_,
+                                                [&](HeldTouches& touches) { return candidate(cloth, touches); }, v);
+    if (!response_.known_at_start())
+        for (std::size_t i = 0; i < cloth.other_force.size(); ++i) {
+            const Vec3 before = last.empty() ? Vec3::Zero() : last[i];
+            cloth.other_force[i] = before + taken_up * (cloth.other_force[i] - before);
+        }
     finish_step(motion_, motion_options_, v);
     cloth.x = left_at_ = ghost_nodes(motion_.cloth.midpoints, motion_.x);
     cloth.velocity = ghost_nodes(motion_.cloth.midpoints, motion_.velocity);

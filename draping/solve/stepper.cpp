@@ -16,6 +16,20 @@ Points Moving::contact_force() const {
     return force;
 }
 
+Points body_velocities(const Response& response, const Points& body_end, double dt) {
+    Points velocity(body_end.size());
+    for (std::size_t i = 0; i < body_end.size(); ++i) velocity[i] = (body_end[i] - response.body()[i]) / dt;
+    return velocity;
+}
+
+Vec3 rate(const Touch& t, const Points& v, const Points& body_velocity) {
+    Vec3 sum = Vec3::Zero();
+    const int n = int(v.size());
+    for (int k = 0; k < 4; ++k)
+        if (t.weight[k] != 0) sum += t.weight[k] * (t.point[k] < n ? v[t.point[k]] : body_velocity[t.point[k] - n]);
+    return sum;
+}
+
 double kinetic_energy(const std::vector<double>& node_mass, const Moving& cloth) {
     double sum = 0;
     for (std::size_t i = 0; i < cloth.velocity.size(); ++i) sum += 0.5 * node_mass[i] * cloth.velocity[i].squaredNorm();

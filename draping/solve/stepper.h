@@ -38,6 +38,11 @@ struct Moving {
     Points contact_force() const;
 };
 
+/// m/s, of the body's points in a step that ends with them at `body_end`; they are where the response has them.
+Points body_velocities(const Response& response, const Points& body_end, double dt);
+/// Rate of the vector between the places that touch, by the velocities of the nodes and of the body's points.
+Vec3 rate(const Touch& touch, const Points& v, const Points& body_velocity);
+
 class Stepper {
 public:
     virtual ~Stepper() = default;

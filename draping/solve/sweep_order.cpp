@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/solve/sweep_order.h"
 
-#include <stdexcept>
+#include "geometry/named.h"
+
+#include <array>
 
 namespace toile {
 
@@ -16,13 +18,8 @@ const char* to_string(SweepOrder order) {
 }
 
 SweepOrder sweep_order(const std::string& name) {
-    std::string names;
-    for (const SweepOrder order :
-         {SweepOrder::listed, SweepOrder::reversed, SweepOrder::longest_first, SweepOrder::from_top}) {
-        if (name == to_string(order)) return order;
-        names += (names.empty() ? "" : ", ") + std::string(to_string(order));
-    }
-    throw std::invalid_argument("there is no order of a sweep '" + name + "', the orders are " + names);
+    return named(name, std::array{SweepOrder::listed, SweepOrder::reversed, SweepOrder::longest_first, SweepOrder::from_top},
+                 "order of a sweep", "orders");
 }
 
 } // namespace toile

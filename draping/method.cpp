@@ -27,7 +27,7 @@ constexpr double inextensible_step = 5e-4; // s: lines that the body stretches p
 std::vector<Spring> springs_of(Method method, const Garment& garment, const std::vector<Fabric>& fabrics,
                                const MethodOptions& options) {
     return mesh_springs(garment, fabrics,
-                        {options.spring_damping, method == Method::springs_biphasic ? options.beyond : 1});
+                        {options.damping_time, method == Method::springs_biphasic ? options.beyond : 1});
 }
 
 /// What a stepper is made of beside the model.
@@ -138,7 +138,7 @@ std::unique_ptr<Energy> make_energy(Method method, const Garment& garment, const
     case Method::equilibrium: return std::make_unique<SheetEnergy>(make_sheet(garment, fabrics));
     case Method::springs_implicit:
     case Method::springs_biphasic: return std::make_unique<Springs>(springs_of(method, garment, fabrics, options));
-    case Method::triangles: return std::make_unique<TriangleCloth>(garment, fabrics);
+    case Method::triangles: return std::make_unique<TriangleCloth>(garment, fabrics, options.damping_time);
     case Method::projective: return std::make_unique<ProjectiveCloth>(garment, fabrics);
     case Method::inextensible: {
         auto yarns = std::make_unique<YarnCloth>(garment, fabrics, yarn_edges(garment));

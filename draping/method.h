@@ -36,7 +36,7 @@ inline bool needs_grain_lattice(Method method) { return method == Method::inexte
 struct MethodOptions {
     double time_step = 0;         ///< s, of explicit methods that of substeps; 0: that of the StepOptions, of inextensible 0.5 ms, of
                                   ///< explicit ones what is stable
-    double spring_damping = 2e-5; ///< s, damping of springs as a share of their stiffness
+    double damping_time = 2e-5;   ///< s, damping of springs and triangles as a share of their stiffness
     double beyond = 20;           ///< springs-biphasic: stiffness beyond the fabric's limits, times that before
     LimitOptions limits;          ///< springs-limited
     bool projected = true;        ///< triangles: a positive semidefinite stand-in for the Hessian

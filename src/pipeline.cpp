@@ -104,7 +104,7 @@ std::string input_hash(const DrapeJob& job) {
     hash.add(std::string("method ") + to_string(job.drape.method) + ' ' + to_string(how.limits.order) +
              (how.limits.shear ? " shear" : "") + (how.projected ? "" : " exact") + '\n');
     for (const double value :
-         {double(how.limits.sweeps), how.time_step, how.spring_damping, how.beyond, job.form.height, job.form.bust, job.form.waist, job.form.hip, job.edge_length, job.drape.tolerance,
+         {double(how.limits.sweeps), how.time_step, how.damping_time, how.beyond, job.form.height, job.form.bust, job.form.waist, job.form.hip, job.edge_length, job.drape.tolerance,
           job.drape.clearance, job.drape.friction, job.drape.cloth_friction, job.drape.gravity})
         hash.add(std::to_string(value) + ' ');
     if (const AnimateOptions& a = job.drape.animation; is_animated(job.drape))

@@ -79,10 +79,22 @@ GrainBend bend(const GrainTriangle& t, const GrainImages& y, HessianKind kind) {
     return h;
 }
 
+/// Adds `share` times the stiffness of a constraint of N nodes times the product of its gradient with itself.
+template <int N> void add_product(const Constraint& c, double share, BlockMatrix& h) {
+    std::array<int, N> nodes;
+    Eigen::Matrix<double, 3 * N, 1> gradient;
+    for (int i = 0; i < N; ++i) {
+        nodes[i] = c.nodes[i];
+        gradient.template segment<3>(3 * i) = c.gradient[i];
+    }
+    const Eigen::Matrix<double, 3 * N, 3 * N> block = share * c.stiffness * gradient * gradient.transpose();
+    h.add_element(nodes, block);
+}
+
 } // namespace
 
-TriangleCloth::TriangleCloth(const Garment& garment, const std::vector<Fabric>& fabrics)
-    : bends_(make_hinge_bends(garment, fabrics)) {
+TriangleCloth::TriangleCloth(const Garment& garment, const std::vector<Fabric>& fabrics, double damping_time)
+    : bends_(make_hinge_bends(garment, fabrics)), damping_time_(damping_time) {
     for (int t = 0; t < int(garment.triangles.size()); ++t)
         triangles_.push_back(make_grain_triangle(garment, fabrics[garment.panel_of_triangle[t]], t));
 }
@@ -123,6 +135,27 @@ Constraint TriangleCloth::constraint(int k, const Points& x) const {
         c.gradient[i] = at_corner(t.shape, s, i);
     }
     return c;
+}
+
+void TriangleCloth::add_damping(const Points& x, const Points& v, Eigen::VectorXd& force) const {
+    if (damping_time_ == 0) return;
+    for (int k = 0; k < constraint_count(); ++k) {
+        const Constraint c = constraint(k, x);
+        double rate = 0;
+        for (int i = 0; i < c.count; ++i) rate += c.gradient[i].dot(v[c.nodes[i]]);
+        for (int i = 0; i < c.count; ++i) force.segment<3>(3 * c.nodes[i]) -= damping_time_ * c.stiffness * rate * c.gradient[i];
+    }
+}
+
+void TriangleCloth::add_damping_matrix(const Points& x, double factor, BlockMatrix& h) const {
+    if (damping_time_ == 0) return;
+    for (int k = 0; k < constraint_count(); ++k) {
+        const Constraint c = constraint(k, x);
+        if (c.count == 3)
+            add_product<3>(c, factor * damping_time_, h);
+        else
+            add_product<4>(c, factor * damping_time_, h);
+    }
 }
 
 void TriangleCloth::couplings(std::vector<std::pair<int, int>>& pairs) const {

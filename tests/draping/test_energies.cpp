@@ -352,22 +352,40 @@ TEST_CASE("energies: gradient and Hessian by finite differences, rigid motions, 
         check_energy(c);
 }
 
-TEST_CASE("energies: friction within springs acts along them, and its matrix is its derivative", "[energies]") {
-    std::vector<Spring> all = mesh_springs(garment_of(mesh(), 0.3), {woven()}, {1e-3, 1});
-    const Springs springs(all);
-    Points x = shaken(flat_points(mesh()), 3e-3, 2), v = shaken(Points(x.size(), Vec3::Zero()), 0.1, 4);
-    VectorXd force = VectorXd::Zero(3 * x.size());
-    springs.add_damping(x, v, force);
-    BlockMatrix d = full_matrix(int(x.size()));
-    springs.add_damping_matrix(x, 2.5, d);
-    CHECK(force.norm() > 0);
-    CHECK((force + dense(d) * flat(v) / 2.5).norm() < 1e-12 * force.norm()); // linear in the velocities
-    CHECK(force.dot(flat(v)) < 0);
-    const VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(dense(d)).eigenvalues();
-    CHECK(values[0] > -1e-10 * values[values.size() - 1]);
-    // Motion as a rigid body meets none.
-    for (std::size_t i = 0; i < x.size(); ++i) v[i] = Vec3(0.3, 0, 0.1) + Vec3(1, 2, 3).cross(x[i]);
-    VectorXd rigid = VectorXd::Zero(3 * x.size());
-    springs.add_damping(x, v, rigid);
-    CHECK(rigid.norm() < 1e-10 * force.norm());
+TEST_CASE("energies: friction within the cloth takes energy and no momentum, and its matrix is its derivative", "[energies]") {
+    const Garment garment = garment_of(mesh(), 0.3);
+    const Springs springs(mesh_springs(garment, {woven()}, {1e-3, 1}));
+    const TriangleCloth triangles(garment, {woven()}, 1e-3);
+    const Points x = shaken(flat_points(mesh()), 3e-3, 2), v = shaken(Points(x.size(), Vec3::Zero()), 0.1, 4);
+    const Points other = shaken(Points(x.size(), Vec3::Zero()), 0.1, 5);
+    for (const Energy* energy : {static_cast<const Energy*>(&springs), static_cast<const Energy*>(&triangles)}) {
+        INFO((energy == &springs ? "springs" : "triangles"));
+        const auto force_at = [&](const VectorXd& velocity) {
+            Points u(x.size());
+            flat(u) = velocity;
+            VectorXd force = VectorXd::Zero(velocity.size());
+            energy->add_damping(x, u, force);
+            return force;
+        };
+        BlockMatrix matrix = full_matrix(int(x.size()));
+        energy->add_damping_matrix(x, 2.5, matrix);
+        const Eigen::MatrixXd d = dense(matrix) / 2.5;
+        const VectorXd force = force_at(flat(v));
+        CHECK(force.norm() > 0);
+        CHECK(force.dot(flat(v)) < 0);
+        const VectorXd difference = (force_at(flat(v) + 0.01 * flat(other)) - force_at(flat(v) - 0.01 * flat(other))) / 0.02;
+        CHECK((difference + d * flat(other)).norm() < 1e-10 * difference.norm());
+        const VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(d).eigenvalues();
+        CHECK(values[0] > -1e-10 * values[values.size() - 1]);
+        Vec3 pull = Vec3::Zero(), spin = Vec3::Zero();
+        Points rigid = v;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+            pull += force.segment<3>(3 * i);
+            spin += x[i].cross(force.segment<3>(3 * i));
+            rigid[i] = Vec3(0.3, 0, 0.1) + Vec3(1, 2, 3).cross(x[i]);
+        }
+        CHECK(pull.norm() < 1e-11 * force.norm());
+        CHECK(spin.norm() < 1e-11 * force.norm());
+        CHECK(force_at(flat(rigid)).norm() < 1e-10 * force.norm());
+    }
 }

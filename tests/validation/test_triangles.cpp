@@ -3,6 +3,11 @@
 
 #include "draping/energy/triangles.h"
 
+#include "draping/cloth.h"
+#include "draping/solve/implicit.h"
+#include "tests/support/energy_checks.h"
+#include "tests/support/free_springs.h"
+#include "tests/support/plain_fabric.h"
 #include "tests/support/plates.h"
 #include "tests/support/pulled_square.h"
 
@@ -90,4 +95,51 @@ TEST_CASE("triangles: stiffness at an angle to the grain", "[validation]") {
     CHECK(stiffness_at(0) == Approx(1000).epsilon(0.01));
     CHECK(stiffness_at(pi / 4) == Approx(144.58).epsilon(0.01));
     CHECK(stiffness_at(pi / 2) == Approx(600).epsilon(0.01));
+}
+
+// Flat cloth has all its conditions at 0: its second derivative is K = sum k c c^T and the matrix of its damping t K. A mode of
+// frequency w then loses t w^2 of its energy per second, and implicit steps of h as much again as t = h would.
+TEST_CASE("triangles: damped modes lose energy as theory says", "[validation]") {
+    const FlatMesh mesh = jittered_rectangle(0.06, 0.04, 0.02, 0.2, 3);
+    const Garment garment = garment_of(mesh);
+    const std::vector<Fabric> fabrics{plain_fabric(500, 1e-4)};
+    const std::vector<double> mass = node_masses(garment, fabrics);
+    const Points rest = flat_points(mesh);
+    const TriangleCloth cloth(garment, fabrics, 1e-3);
+    BlockMatrix stiffness = full_matrix(int(rest.size())), damping = full_matrix(int(rest.size()));
+    cloth.add_hessian(rest, HessianKind::exact, stiffness);
+    cloth.add_damping_matrix(rest, 1, damping);
+    const Eigen::MatrixXd k = dense(stiffness);
+    CHECK((dense(damping) - 1e-3 * k).norm() < 1e-12 * 1e-3 * k.norm());
+
+    VectorXd root(3 * mass.size()); // 1 / sqrt of the mass
+    for (std::size_t i = 0; i < mass.size(); ++i) root.segment<3>(3 * i).setConstant(1 / std::sqrt(mass[i]));
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> modes(root.asDiagonal() * k * root.asDiagonal());
+    const auto flexes = [&](int mode) { // out of the plane, or in it
+        double out = 0;
+        for (std::size_t i = 0; i < mass.size(); ++i) out += std::pow(modes.eigenvectors()(3 * i + 2, mode), 2);
+        return out > 0.5;
+    };
+    // The six slowest are rigid motions. The slowest and the fastest of either kind: bending, shear and stretch.
+    const int all = int(modes.eigenvalues().size());
+    std::array<int, 4> chosen{-1, -1, -1, -1};
+    for (int mode = 6; mode < all; ++mode) {
+        if (chosen[flexes(mode)] < 0) chosen[flexes(mode)] = mode;
+        chosen[2 + flexes(mode)] = mode;
+    }
+    for (const int mode : chosen) {
+        REQUIRE(mode >= 6);
+        const double w = std::sqrt(modes.eigenvalues()[mode]), h = 5e-3 / w, damping_time = 0.04 / w;
+        INFO("a mode of " << w << " rad/s " << (flexes(mode) ? "out of the plane" : "in the plane"));
+        FreeCloth problem(std::make_unique<TriangleCloth>(garment, fabrics, damping_time), mass);
+        NoContact response;
+        ImplicitStepper stepper(problem, response, {h, 0, 1e9});
+        Moving moving{rest, rest};
+        flat(moving.velocity) = 1e-6 * w * (root.asDiagonal() * modes.eigenvectors().col(mode));
+        const auto energy = [&] { return problem.value(moving.x) + kinetic_energy(mass, moving); };
+        const double start = energy(), rate = (damping_time + h) * w * w;
+        const int steps = int(std::lround(6 * pi / (w * h))); // of whole swings: it is lost where it moves
+        for (int i = 0; i < steps; ++i) stepper.step(moving, {});
+        CHECK(std::log(start / energy()) == Approx(rate * steps * h).epsilon(0.02));
+    }
 }

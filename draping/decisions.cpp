@@ -62,6 +62,9 @@ std::string method_sentence(const DrapeFacts& f, const Garment& g) {
     if (f.method == Method::inextensible)
         limits = text("%d of %d edges lie along warp or weft and kept their lengths%s", int(yarn_edges(g).size()), g.edges.size(),
                       f.contact.response == ContactResponse::barrier ? "" : " in every step before contact");
+    if (f.method == Method::triangles && (f.motion || f.contact.response != ContactResponse::barrier))
+        limits += text("; its steps were solved with %s of its energy",
+                       f.projected ? "a positive semidefinite second derivative" : "the exact second derivative");
     if (f.kept_strain)
         limits = text("triangles keep their shape on the midpoints of their edges, where the largest strain at the end is %.2g %%; "
                       "strains elsewhere in this report are of the mesh through the means of their corners",

@@ -35,6 +35,7 @@ TouchFacts count_touching(const Contact& contact, const Points& x);
 struct DrapeFacts {
     TouchFacts touch;
     Method method = Method::equilibrium;
+    bool projected = true;             ///< MethodOptions::projected
     std::optional<double> kept_strain; ///< as the method's stepper tells it
     ContactReport contact;
     std::optional<MotionReport> motion; ///< of an animation

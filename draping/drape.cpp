@@ -201,6 +201,7 @@ DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabri
     DrapeRun run{.staging = staging, .avatar = avatar.body, .fabrics = fabrics, .options = options};
     run.result.residual = std::numeric_limits<double>::infinity();
     run.result.method = run.facts.method = options.method;
+    run.facts.projected = options.method_options.projected;
     run.result.contact.response = response_of(options);
     run.result.tolerance = options.tolerance;
     run.result.friction = {options.friction, options.cloth_friction};

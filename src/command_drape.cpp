@@ -21,7 +21,7 @@ namespace {
 struct DrapeArguments {
     DrapeJob job;
     bool rate_chosen = false, air_chosen = false;
-    bool sweeps_chosen = false;
+    bool sweeps_chosen = false, hessian_chosen = false;
     int threads = 0;
     bool quiet = false, json = false;
 };
@@ -38,6 +38,11 @@ void refuse_useless_method(const DrapeArguments& a) {
     if (a.sweeps_chosen && o.method != Method::springs_limited)
         throw CommandLineError("--limit and --sweep are about limits on springs, which " + method +
                                " does not have: name --method springs-limited");
+    if (a.hessian_chosen && o.method != Method::triangles)
+        throw CommandLineError("--hessian is about the steps of triangles, which " + method + " does not have: name --method triangles");
+    if (a.hessian_chosen && !is_animated(o) && !moves(o))
+        throw CommandLineError("--hessian is that of the steps of a motion: " + method + " with the contact barrier comes to rest without "
+                               "any; name another --contact, or --animate");
 }
 
 /// The same of options about frames in time.
@@ -216,6 +221,16 @@ void add_method(CLI::App& command, DrapeArguments& a) {
             "The order in which it does so (default listed)")
         ->check(CLI::IsMember({"listed", "reversed", "longest-first", "from-top"}).description(""))
         ->type_name("listed|reversed|longest-first|from-top");
+    command
+        .add_option_function<std::string>(
+            "--hessian",
+            [&a](const std::string& kind) {
+                a.hessian_chosen = true;
+                a.job.drape.method_options.projected = kind == "projected";
+            },
+            "Second derivative that steps of triangles are solved with: exact, or positive semidefinite (default projected)")
+        ->check(CLI::IsMember({"projected", "exact"}).description(""))
+        ->type_name("projected|exact");
 }
 
 /// --animate and what goes with it.

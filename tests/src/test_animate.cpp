@@ -158,6 +158,27 @@ TEST_CASE("a wide swing keeps its energy by explicit steps and only loses by imp
     CHECK(left < 1.4 * std::exp(-2));
 }
 
+TEST_CASE("triangles swing alike by either second derivative, and the report says by which", "[animate]") {
+    const TempFolder folder;
+    const std::string strip = hung_strip(folder, [](double s) { return 0.3 * (length - s); },
+                                         [](double s) { return length - std::sqrt(0.91) * (length - s); });
+    const auto swing = [&](const std::vector<std::string>& how) {
+        std::vector<std::string> words{strip, "--method", "triangles", "--animate", "0.5s", "-o", folder / "a.obj"};
+        words.insert(words.end(), how.begin(), how.end());
+        const auto report = animate(words);
+        return std::pair(report, read_pc2(folder / "a.pc2", 24).frames.back());
+    };
+    const auto [projected, p] = swing({"--hessian", "projected"});
+    const auto [exact, e] = swing({"--hessian", "exact"});
+    double apart = 0;
+    for (std::size_t i = 0; i < p.size(); ++i) apart = std::max(apart, (p[i] - e[i]).norm());
+    CHECK(apart > 1e-7);
+    CHECK(apart < 0.01 * length);
+    CHECK(exact["input_hash"] != projected["input_hash"]);
+    CHECK_THAT(exact["decisions"].dump(), Contains("solved with the exact second derivative of its energy"));
+    CHECK_THAT(projected["decisions"].dump(), Contains("solved with a positive semidefinite second derivative of its energy"));
+}
+
 TEST_CASE("an animated skirt: caches, GLB, report and garment agree, for any number of threads", "[animate]") {
     const TempFolder folder;
     const auto run = [&](const std::string& name, const std::string& threads) {

@@ -207,6 +207,10 @@ TEST_CASE("options that a method would ignore are refused", "[methods]") {
              {"--sweep", "from-top"},
              {"--method", "springs-implicit", "--limit", "stretch"},
              {"--method", "springs-limited", "--sweep", "somehow"},
+             {"--hessian", "exact"},
+             {"--method", "springs-implicit", "--contact", "impulse", "--hessian", "exact"},
+             {"--method", "triangles", "--hessian", "exact"},
+             {"--method", "triangles", "--contact", "impulse", "--hessian", "rounded"},
              {"--method", "springs-limited", "--avatar-sequence", "frames"}}) {
         std::vector<std::string> words{"drape", tee, "--json"};
         words.insert(words.end(), wrong.begin(), wrong.end());

@@ -28,6 +28,7 @@ public:
     double feasible_step(const Points&, const Eigen::VectorXd&, std::vector<double>* shares = nullptr) override;
     void damping(const Points& x, const Points& v, Eigen::VectorXd& force) override;
     void add_damping_matrix(const Points& x, double factor, BlockMatrix& h) override;
+    void add_left_out(const Eigen::VectorXd& v, Eigen::VectorXd& product) const override { energy_->add_left_out(v, product); }
 
 protected:
     /// What one who adds to the energy couples, and the blocks of its second derivative; false when the matrix lacks one.

@@ -10,6 +10,8 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double hold_share = 100; // of the nodes' own entries in the matrix, with which touches hold
+constexpr double left_over = 1e-5; // of the size of a solution, that conjugate gradients leave
+constexpr int most_gradients = 50;
 constexpr int most_rounds = 2;     // solves of a step, until every touch that slides or pulls is known
 
 /// N/m per node: a third of the trace of its own entries.
@@ -49,12 +51,42 @@ Points ImplicitStepper::candidate(Moving& cloth, HeldTouches& touches) {
         held.pin(problem_.pinned());
         ++factorisations_;
         if (!factor_.factorise(held)) throw std::runtime_error("the motion of the cloth has no finite stiffness");
-        VectorXd solution;
-        factor_.solve(b / (dt * dt), solution);
-        flat(v) = solution;
+        flat(v) = solution(held, b / (dt * dt));
         if (!touches.let_go(v, round + 1 == most_rounds)) break;
     }
     return v;
+}
+
+/// By the factor of `a`; conjugate gradients add what `a` leaves out of the second derivative. Without it the step would be explicit
+/// in that part, which a stiff plate does not bear.
+VectorXd ImplicitStepper::solution(const BlockMatrix& a, const VectorXd& b) {
+    const auto left_out = [&](const VectorXd& v) {
+        VectorXd product = VectorXd::Zero(v.size());
+        problem_.add_left_out(v, product);
+        for (int i = 0; i < problem_.points(); ++i)
+            if (pinned(i)) product.segment<3>(3 * i).setZero();
+        return product;
+    };
+    VectorXd x, z, product;
+    factor_.solve(b, x);
+    VectorXd r = -left_out(x);
+    if (r.isZero(0)) return x;
+    factor_.solve(r, z);
+    VectorXd p = z;
+    double rz = r.dot(z);
+    const double stop = left_over * left_over * b.dot(x);
+    for (int k = 0; k < most_gradients && rz > stop; ++k) {
+        a.multiply(p, product);
+        product += left_out(p);
+        const double share = rz / p.dot(product);
+        x += share * p;
+        r -= share * product;
+        factor_.solve(r, z);
+        const double next = r.dot(z);
+        p = z + next / rz * p;
+        rz = next;
+    }
+    return x;
 }
 
 ResponseDone ImplicitStepper::step(Moving& cloth, const Points& body_end) {

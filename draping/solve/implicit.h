@@ -23,6 +23,7 @@ protected:
 
 private:
     Points candidate(Moving& cloth, HeldTouches& touches);
+    Eigen::VectorXd solution(const BlockMatrix& a, const Eigen::VectorXd& b);
 
     Cholesky factor_;
     bool analysed_ = false; ///< the factor has the pattern of the problem's matrix

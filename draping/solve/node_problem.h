@@ -26,6 +26,9 @@ public:
     }
     /// Adds minus their derivative by the velocities, times `factor`, to the matrix of hessian().
     virtual void add_damping_matrix(const Points& x, double factor, BlockMatrix& h) { (void)x, (void)factor, (void)h; }
+    /// Adds to `product` what the matrix of hessian() leaves out of the second derivative's product with v, for the sake of a cheap
+    /// factor.
+    virtual void add_left_out(const Eigen::VectorXd& v, Eigen::VectorXd& product) const { (void)v, (void)product; }
 
     /// Largest force on a node that is not pinned, over its weight or a tenth of the mean weight, whichever is more.
     double residual(const Points& x, const Eigen::VectorXd& g) override;

@@ -4,6 +4,7 @@
 #include "geometry/bvh.h"
 #include "geometry/distance.h"
 #include "geometry/intersections.h"
+#include "geometry/parallel.h"
 #include "geometry/slice.h"
 
 #include <Eigen/LU>
@@ -302,9 +303,11 @@ IntersectingPairs find_intersections(const std::vector<Triangle>& cloth, const P
                 if (sewn.count({a, b})) return true;
         return false;
     };
-    std::vector<std::array<int, 2>> own = self_intersecting_pairs(mesh);
-    if (!sewn.empty()) std::erase_if(own, joined);
-    return {intersecting_pairs(mesh, body), std::move(own)};
+    IntersectingPairs pairs;
+    parallel_both([&] { pairs.cloth_avatar = intersecting_pairs(mesh, body); },
+                  [&] { pairs.cloth_cloth = self_intersecting_pairs(mesh); });
+    if (!sewn.empty()) std::erase_if(pairs.cloth_cloth, joined);
+    return pairs;
 }
 
 IntersectionCount count_intersections(const std::vector<Triangle>& cloth, const Points& x, const TriMesh& body,

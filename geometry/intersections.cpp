@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/intersections.h"
 
+#include "geometry/bvh.h"
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Intersections_3/Point_3_Segment_3.h>
 #include <CGAL/Intersections_3/Point_3_Triangle_3.h>
@@ -65,19 +67,30 @@ struct TriangleBox {
     double max_coord(int d) const { return high[d]; }
 };
 
-std::vector<TriangleBox> boxes_of(const TriMesh& mesh, std::size_t first_id) {
-    std::vector<TriangleBox> boxes(mesh.triangles.size());
-    for (int t = 0; t < int(boxes.size()); ++t) {
-        boxes[t].triangle = t;
-        boxes[t].unique = first_id + t;
+/// Those of the triangles that reach into `region`.
+std::vector<TriangleBox> boxes_of(const TriMesh& mesh, std::size_t first_id, const Box& region) {
+    std::vector<TriangleBox> boxes;
+    boxes.reserve(mesh.triangles.size());
+    for (int t = 0; t < int(mesh.triangles.size()); ++t) {
+        Box box;
+        for (const int i : mesh.triangles[t]) box.extend(mesh.points[i]);
+        if (!region.intersects(box)) continue;
+        TriangleBox& b = boxes.emplace_back();
+        b.triangle = t;
+        b.unique = first_id + t;
         for (int d = 0; d < 3; ++d) {
-            const auto [a, b, c] = mesh.triangles[t];
-            const auto [low, high] = std::minmax({mesh.points[a][d], mesh.points[b][d], mesh.points[c][d]});
-            boxes[t].low[d] = low;
-            boxes[t].high[d] = high;
+            b.low[d] = box.min()[d];
+            b.high[d] = box.max()[d];
         }
     }
     return boxes;
+}
+
+Box box_of(const TriMesh& mesh) {
+    Box box;
+    for (const Triangle& t : mesh.triangles)
+        for (const int i : t) box.extend(mesh.points[i]);
+    return box;
 }
 
 void require_finite(const TriMesh& mesh) {
@@ -88,12 +101,13 @@ void require_finite(const TriMesh& mesh) {
                 " is not finite, expected finite coordinates to look for intersections");
 }
 
-// What every triangle spans. Found once: it costs as much as a test of two triangles.
-std::vector<Shape> shapes_of(const TriMesh& m) {
-    std::vector<Shape> shapes;
-    shapes.reserve(m.triangles.size());
-    for (const auto& [a, b, c] : m.triangles)
-        shapes.push_back(span(to_cgal(m.points[a]), to_cgal(m.points[b]), to_cgal(m.points[c])));
+// What every triangle with a box spans. Found once: it costs as much as a test of two triangles.
+std::vector<Shape> shapes_of(const TriMesh& m, const std::vector<TriangleBox>& boxes) {
+    std::vector<Shape> shapes(m.triangles.size());
+    for (const TriangleBox& box : boxes) {
+        const auto& [a, b, c] = m.triangles[box.triangle];
+        shapes[box.triangle] = span(to_cgal(m.points[a]), to_cgal(m.points[b]), to_cgal(m.points[c]));
+    }
     return shapes;
 }
 
@@ -157,8 +171,10 @@ Pairs intersecting_pairs(const TriMesh& a, const TriMesh& b) {
     require_finite(a);
     require_finite(b);
     Pairs pairs;
-    const std::vector<Shape> shapes_a = shapes_of(a), shapes_b = shapes_of(b);
-    std::vector<TriangleBox> boxes_a = boxes_of(a, 0), boxes_b = boxes_of(b, boxes_a.size());
+    const Box common = box_of(a).intersection(box_of(b));
+    if (common.isEmpty()) return pairs;
+    std::vector<TriangleBox> boxes_a = boxes_of(a, 0, common), boxes_b = boxes_of(b, a.triangles.size(), common);
+    const std::vector<Shape> shapes_a = shapes_of(a, boxes_a), shapes_b = shapes_of(b, boxes_b);
     CGAL::box_intersection_d(boxes_a.begin(), boxes_a.end(), boxes_b.begin(), boxes_b.end(),
                              [&](const TriangleBox& s, const TriangleBox& t) {
                                  if (meet_shapes(shapes_a[s.triangle], shapes_b[t.triangle]))
@@ -171,8 +187,8 @@ Pairs intersecting_pairs(const TriMesh& a, const TriMesh& b) {
 Pairs self_intersecting_pairs(const TriMesh& mesh) {
     require_finite(mesh);
     Pairs pairs;
-    const std::vector<Shape> shapes = shapes_of(mesh);
-    std::vector<TriangleBox> boxes = boxes_of(mesh, 0);
+    std::vector<TriangleBox> boxes = boxes_of(mesh, 0, box_of(mesh));
+    const std::vector<Shape> shapes = shapes_of(mesh, boxes);
     CGAL::box_self_intersection_d(boxes.begin(), boxes.end(),
                                   [&](const TriangleBox& s, const TriangleBox& t) {
                                       const auto [low, high] = std::minmax(s.triangle, t.triangle);

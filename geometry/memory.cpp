@@ -13,6 +13,7 @@ MemoryUse memory_use() {
     char line[128];
     double kilobytes = 0;
     while (std::fgets(line, sizeof line, file)) {
+        if (line[0] != 'V') continue; // most lines are about something else, and reading formats takes time
         if (std::sscanf(line, "VmHWM: %lf", &kilobytes) == 1) use.peak = 1024 * kilobytes;
         if (std::sscanf(line, "VmRSS: %lf", &kilobytes) == 1) use.now = 1024 * kilobytes;
     }

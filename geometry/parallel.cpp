@@ -59,6 +59,12 @@ void parallel_for(int n, int chunk, const std::function<void(int, int)>& body) {
     workers()->arena.execute([&] { tbb::parallel_for(0, chunks, run); });
 }
 
+void parallel_both(const std::function<void()>& a, const std::function<void()>& b) {
+    parallel_for(2, 1, [&](int begin, int end) {
+        for (int k = begin; k < end; ++k) (k == 0 ? a : b)();
+    });
+}
+
 double parallel_sum(int n, int chunk, const std::function<double(int, int)>& part) {
     chunk = std::max(chunk, 1);
     std::vector<double> parts(chunk_count(n, chunk));

@@ -17,6 +17,9 @@ int threads();
 /// `chunk` is at least 1. An exception thrown by the body is thrown on to the caller. May be nested.
 void parallel_for(int n, int chunk, const std::function<void(int begin, int end)>& body);
 
+/// Both, at once where there is a thread for it. What either throws is thrown on to the caller.
+void parallel_both(const std::function<void()>& a, const std::function<void()>& b);
+
 /// Number of chunks that parallel_for makes of [0, n); chunk c is [c * chunk, min(n, (c + 1) * chunk)).
 int chunk_count(int n, int chunk);
 

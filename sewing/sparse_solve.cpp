@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sewing/sparse_solve.h"
 
+#include <cblas.h>
 #include <cholmod.h>
+#include <omp.h>
 
 #include <memory>
 #include <stdexcept>
@@ -14,6 +16,8 @@ namespace {
 struct Workspace {
     cholmod_common common;
     Workspace() {
+        openblas_set_num_threads(1); // the last bits of its sums depend on their number
+        omp_set_max_active_levels(0);
         cholmod_start(&common);
         common.print = 0;
         common.supernodal = CHOLMOD_SUPERNODAL;

@@ -288,9 +288,13 @@ DrapeOutcome run_job(const DrapeJob& job) {
     ReadSequence sequence = read_motion(job);
     const TriMesh& body = outcome.body = std::move(sequence.body);
     context.decisions = sequence.notes;
-    context.body_measures = measures_of(body, context.decisions);
-    context.input_hash = input_hash(job);
-    const Avatar avatar{body, smoothed_toward_core(body, 0.01)};
+    Points core;
+    parallel_both([&] { core = smoothed_toward_core(body, 0.01); },
+                  [&] {
+                      context.body_measures = measures_of(body, context.decisions);
+                      context.input_hash = input_hash(job);
+                  });
+    const Avatar avatar{body, std::move(core)};
     watch.lap(context, "read");
 
     const DrapeInput input = is_staged(job.pattern)

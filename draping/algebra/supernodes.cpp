@@ -26,7 +26,7 @@ SupernodalCholesky::SupernodalCholesky(const SupernodalPattern& p, const BlockMa
     : rows_(p.rows), first_(p.first, p.first + p.count + 1), row_begin_(p.row_begin, p.row_begin + p.count + 1),
       row_(p.row, p.row + p.row_begin[p.count]), order_(p.order, p.order + p.rows),
       value_begin_(p.value_begin, p.value_begin + p.count + 1), value_(p.value_begin[p.count]),
-      waiting_(p.count, nullptr), x_(p.rows) {
+      shared_update_(p.count), waiting_(p.count, nullptr), beyond_(p.count), x_(p.rows) {
     find_tree();
     find_subtrees();
     find_places(a);
@@ -66,7 +66,7 @@ void SupernodalCholesky::find_tree() {
 // Cuts the elimination tree from the roots down, always its heaviest subtree, until there are enough.
 void SupernodalCholesky::find_subtrees() {
     const int n = int(first_.size()) - 1;
-    std::vector<int> low(n), open;
+    std::vector<int> low(n), open, height_above(n, -1); // of shared supernodes above the subtrees
     std::vector<double> cost(n);
     for (int s = 0; s < n; ++s) {
         low[s] = s;
@@ -77,6 +77,7 @@ void SupernodalCholesky::find_subtrees() {
         }
         if (parent_[s] < 0) open.push_back(s);
     }
+    std::vector<int> shared;
     while (int(open.size()) < most_subtrees) {
         const auto heaviest = std::max_element(open.begin(), open.end(),
                                                [&](int a, int b) { return cost[a] < cost[b]; });
@@ -84,16 +85,27 @@ void SupernodalCholesky::find_subtrees() {
         if (children_[s].empty()) break;
         open.erase(heaviest);
         open.insert(open.end(), children_[s].begin(), children_[s].end());
-        shared_.push_back(s);
+        shared.push_back(s);
     }
-    std::sort(shared_.begin(), shared_.end());
+    std::sort(shared.begin(), shared.end());
+    for (const int s : shared) {
+        for (const int c : children_[s]) height_above[s] = std::max(height_above[s], height_above[c]);
+        if (++height_above[s] == int(shared_.size())) shared_.emplace_back();
+        shared_[height_above[s]].push_back(s);
+        beyond_[s].resize(height(s) - columns(s));
+    }
     std::sort(open.begin(), open.end());
-    shared_index_.assign(rows_, -1);
-    int shared_columns = 0;
-    for (const int s : shared_)
-        for (int c = first_[s]; c < first_[s + 1]; ++c) shared_index_[c] = shared_columns++;
-    // Supernodes are numbered in postorder: a subtree is a range.
-    for (const int s : open) subtrees_.push_back({low[s], s, Eigen::VectorXf(shared_columns)});
+    in_root_.assign(row_.size(), -1);
+    std::vector<int> place(rows_);
+    for (const int root : open) {
+        // Supernodes are numbered in postorder: a subtree is a range. What it touches beyond itself its root touches.
+        subtrees_.push_back({low[root], root});
+        beyond_[root].resize(height(root) - columns(root));
+        const int below = row_begin_[root] + columns(root);
+        for (int i = below; i < row_begin_[root + 1]; ++i) place[row_[i]] = i - below;
+        for (int i = row_begin_[low[root]]; i < row_begin_[root + 1]; ++i)
+            if (row_[i] >= first_[root + 1]) in_root_[i] = place[row_[i]];
+    }
 }
 
 void SupernodalCholesky::find_places(const BlockMatrix& a) {
@@ -116,23 +128,15 @@ void SupernodalCholesky::find_places(const BlockMatrix& a) {
 
 // A supernode's update is made above those of its children, which it then replaces.
 void SupernodalCholesky::size_stacks() {
-    stacks_.resize(subtrees_.size() + 1);
-    const auto size = [&](Stack& stack, const auto& supernodes, const auto& on_stack) {
+    for (const Subtree& subtree : subtrees_) {
         std::size_t top = 0, most = 0;
-        for (const int s : supernodes) {
+        for (int s = subtree.first; s <= subtree.last; ++s) {
             most = std::max(most, top + update_size(s));
-            for (const int c : children_[s])
-                if (on_stack(c)) top -= update_size(c);
+            for (const int c : children_[s]) top -= update_size(c);
             top += update_size(s);
         }
-        stack.room.resize(most);
-    };
-    for (std::size_t k = 0; k < subtrees_.size(); ++k) {
-        std::vector<int> range;
-        for (int s = subtrees_[k].first; s <= subtrees_[k].last; ++s) range.push_back(s);
-        size(stacks_[k], range, [](int) { return true; });
+        stacks_.emplace_back().room.resize(most);
     }
-    size(stacks_.back(), shared_, [&](int c) { return std::binary_search(shared_.begin(), shared_.end(), c); });
 }
 
 // Adds a child's update to the columns and the update of its parent.
@@ -152,40 +156,58 @@ void SupernodalCholesky::add_update(int child, const float* update, int s, float
     }
 }
 
-bool SupernodalCholesky::eliminate(int s, Stack& stack, bool in_subtree) {
+/// Factors the columns of a supernode, to which its children have been added, and takes what they are worth off its
+/// update. `alone`: other threads have nothing else to do.
+bool SupernodalCholesky::factor_columns(int s, float* update, bool alone) {
     const int wide = columns(s), tall = height(s), below = tall - wide;
+    Dense own = block(s);
+    int failed = 0;
+    spotrf_("L", &wide, own.data(), &tall, &failed, 1);
+    if (failed != 0) return false;
+    if (below == 0) return true; // a root: there may be others
+    float* lower = own.data() + wide;
+    if (!alone || below < many_panels) {
+        cblas_strsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, below, wide, 1, own.data(), tall,
+                    lower, tall);
+        cblas_ssyrk(CblasColMajor, CblasLower, CblasNoTrans, below, wide, -1, lower, tall, 1, update, below);
+        return true;
+    }
+    parallel_for(below, panel, [&](int begin, int end) {
+        cblas_strsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, end - begin, wide, 1, own.data(),
+                    tall, lower + begin, tall);
+    });
+    parallel_for(below, panel, [&](int begin, int end) {
+        cblas_sgemm(CblasColMajor, CblasNoTrans, CblasTrans, below - begin, end - begin, wide, -1, lower + begin,
+                    tall, lower + begin, tall, 1, update + std::size_t(begin) * below + begin, below);
+    });
+    return true;
+}
+
+bool SupernodalCholesky::eliminate_in_subtree(int s, Stack& stack) {
     float* update = stack.room.data() + stack.top;
     std::fill_n(update, update_size(s), 0.0f);
     std::size_t bottom = stack.top;
     for (const int c : children_[s]) {
         add_update(c, waiting_[c], s, update);
-        if (in_subtree || shared_index_[first_[c]] >= 0) // else it lies on the stack of a subtree
-            bottom = std::min(bottom, std::size_t(waiting_[c] - stack.room.data()));
+        bottom = std::min(bottom, std::size_t(waiting_[c] - stack.room.data()));
     }
-    Dense own = block(s);
-    int failed = 0;
-    spotrf_("L", &wide, own.data(), &tall, &failed, 1);
-    if (failed != 0) return false;
-    if (below == 0) { // a root: there may be others
-        stack.top = bottom;
-        return true;
-    }
-    float* lower = own.data() + wide;
-    cblas_strsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, below, wide, 1, own.data(), tall,
-                lower, tall);
-    if (!in_subtree && below >= many_panels) {
-        parallel_for(below, panel, [&](int begin, int end) {
-            cblas_sgemm(CblasColMajor, CblasNoTrans, CblasTrans, below - begin, end - begin, wide, -1, lower + begin,
-                        tall, lower + begin, tall, 1, update + std::size_t(begin) * below + begin, below);
-        });
-    } else {
-        cblas_ssyrk(CblasColMajor, CblasLower, CblasNoTrans, below, wide, -1, lower, tall, 1, update, below);
-    }
+    if (!factor_columns(s, update, false)) return false;
     float* rest = stack.room.data() + bottom;
     if (rest != update) std::memmove(rest, update, update_size(s) * sizeof(float));
     waiting_[s] = rest;
     stack.top = bottom + update_size(s);
     return true;
+}
+
+bool SupernodalCholesky::eliminate_shared(int s) {
+    std::vector<float>& update = shared_update_[s];
+    update.assign(update_size(s), 0.0f);
+    for (const int c : children_[s]) {
+        add_update(c, waiting_[c], s, update.data());
+        std::vector<float>().swap(shared_update_[c]);
+    }
+    waiting_[s] = update.data();
+    return factor_columns(s, update.data(), true);
 }
 
 bool SupernodalCholesky::factorise(const BlockMatrix& a) {
@@ -199,12 +221,14 @@ bool SupernodalCholesky::factorise(const BlockMatrix& a) {
         for (int k = begin; k < end; ++k) {
             stacks_[k].top = 0;
             for (int s = subtrees_[k].first; s <= subtrees_[k].last && definite; ++s)
-                if (!eliminate(s, stacks_[k], true)) definite = false;
+                if (!eliminate_in_subtree(s, stacks_[k])) definite = false;
         }
     });
-    stacks_.back().top = 0;
-    for (const int s : shared_)
-        if (!definite || !eliminate(s, stacks_.back(), false)) return false;
+    for (const std::vector<int>& level : shared_)
+        parallel_for(int(level.size()), 1, [&](int begin, int end) {
+            for (int k = begin; k < end && definite; ++k)
+                if (!eliminate_shared(level[k])) definite = false;
+        });
     return definite;
 }
 
@@ -214,11 +238,12 @@ void SupernodalCholesky::take(const double* values) {
     });
 }
 
-void SupernodalCholesky::forward(int s, Subtree* subtree) {
+/// Solves for the columns of a supernode; `rest` receives what that takes off the rows below.
+void SupernodalCholesky::solve_columns(int s, Eigen::VectorXf& rest) {
     const int wide = columns(s), below = height(s) - wide;
     const Dense block = this->block(s);
     auto own = x_.segment(first_[s], wide);
-    Eigen::VectorXf rest(below);
+    rest.resize(below);
     if (block.size() < blas_pays) {
         block.topRows(wide).triangularView<Eigen::Lower>().solveInPlace(own);
         rest.noalias() = block.bottomRows(below) * own;
@@ -227,14 +252,30 @@ void SupernodalCholesky::forward(int s, Subtree* subtree) {
         cblas_sgemv(CblasColMajor, CblasNoTrans, below, wide, 1, block.data() + wide, height(s), own.data(), 1, 0,
                     rest.data(), 1);
     }
-    const int* row = row_.data() + row_begin_[s] + wide;
-    const int end = subtree ? first_[subtree->last + 1] : rows_;
-    for (int i = 0; i < below; ++i) {
-        if (row[i] < end)
-            x_[row[i]] -= rest[i];
-        else
-            subtree->beyond[shared_index_[row[i]]] -= rest[i];
+}
+
+void SupernodalCholesky::forward_in_subtree(int s, const Subtree& subtree) {
+    Eigen::VectorXf rest;
+    solve_columns(s, rest);
+    Eigen::VectorXf& beyond = beyond_[subtree.last];
+    const int below = row_begin_[s] + columns(s), end = first_[subtree.last + 1];
+    for (int i = 0; i < rest.size(); ++i) {
+        const int row = row_[below + i];
+        (row < end ? x_[row] : beyond[in_root_[below + i]]) -= rest[i];
     }
+}
+
+void SupernodalCholesky::forward_shared(int s) {
+    const int wide = columns(s);
+    beyond_[s].setZero();
+    for (const int c : children_[s]) {
+        const int* to = in_parent_.data() + row_begin_[c] + columns(c);
+        for (int i = 0; i < beyond_[c].size(); ++i)
+            (to[i] < wide ? x_[first_[s] + to[i]] : beyond_[s][to[i] - wide]) += beyond_[c][i];
+    }
+    Eigen::VectorXf rest;
+    solve_columns(s, rest);
+    beyond_[s] -= rest;
 }
 
 void SupernodalCholesky::backward(int s) {
@@ -262,15 +303,17 @@ void SupernodalCholesky::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
     for (int k = 0; k < rows_; ++k) x_[k] = float(b[order_[k]] / scale);
     parallel_for(int(subtrees_.size()), 1, [&](int begin, int end) {
         for (int k = begin; k < end; ++k) {
-            subtrees_[k].beyond.setZero();
-            for (int s = subtrees_[k].first; s <= subtrees_[k].last; ++s) forward(s, &subtrees_[k]);
+            beyond_[subtrees_[k].last].setZero();
+            for (int s = subtrees_[k].first; s <= subtrees_[k].last; ++s) forward_in_subtree(s, subtrees_[k]);
         }
     });
-    for (const Subtree& t : subtrees_)
-        for (int s : shared_)
-            for (int c = first_[s]; c < first_[s + 1]; ++c) x_[c] += t.beyond[shared_index_[c]];
-    for (int s : shared_) forward(s, nullptr);
-    for (auto s = shared_.rbegin(); s != shared_.rend(); ++s) backward(*s);
+    const auto for_level = [this](const std::vector<int>& level, void (SupernodalCholesky::*step)(int)) {
+        parallel_for(int(level.size()), 1, [&](int begin, int end) {
+            for (int k = begin; k < end; ++k) (this->*step)(level[k]);
+        });
+    };
+    for (const auto& level : shared_) for_level(level, &SupernodalCholesky::forward_shared);
+    for (auto level = shared_.rbegin(); level != shared_.rend(); ++level) for_level(*level, &SupernodalCholesky::backward);
     parallel_for(int(subtrees_.size()), 1, [&](int begin, int end) {
         for (int k = begin; k < end; ++k)
             for (int s = subtrees_[k].last; s >= subtrees_[k].first; --s) backward(s);

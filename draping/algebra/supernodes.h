@@ -44,7 +44,6 @@ private:
     /// Supernodes first .. last, descendants of the last and nobody else's.
     struct Subtree {
         int first, last;
-        Eigen::VectorXf beyond; ///< what it takes off the columns shared with others in a solve
     };
     /// The updates that wait for their parents: the last come first.
     struct Stack {
@@ -61,8 +60,12 @@ private:
     void find_places(const BlockMatrix& a);
     void size_stacks();
     void add_update(int child, const float* update, int s, float* parent_update);
-    bool eliminate(int s, Stack& stack, bool in_subtree);
-    void forward(int s, Subtree* subtree);
+    bool factor_columns(int s, float* update, bool alone);
+    bool eliminate_in_subtree(int s, Stack& stack);
+    bool eliminate_shared(int s);
+    void solve_columns(int s, Eigen::VectorXf& rest);
+    void forward_in_subtree(int s, const Subtree& subtree);
+    void forward_shared(int s);
     void backward(int s);
 
     int rows_ = 0;
@@ -74,10 +77,12 @@ private:
     std::vector<int> place_;      ///< of every value of A among the values of L
     std::vector<float> value_;
     std::vector<Subtree> subtrees_;
-    std::vector<int> shared_;       ///< supernodes of no subtree, rising
-    std::vector<int> shared_index_; ///< per column: place among the columns of `shared_`, or -1
-    std::vector<Stack> stacks_;     ///< of each subtree, and of what they share
-    std::vector<const float*> waiting_; ///< update of each supernode whose parent has yet to be eliminated
+    std::vector<std::vector<int>> shared_; ///< supernodes of no subtree: those of a level stand on earlier levels alone
+    std::vector<int> in_root_;             ///< beside row_: place of a row beyond a subtree among those below its root
+    std::vector<Stack> stacks_;            ///< of each subtree
+    std::vector<std::vector<float>> shared_update_; ///< of each shared supernode whose parent has yet to be eliminated
+    std::vector<const float*> waiting_;    ///< update of each supernode whose parent has yet to be eliminated
+    std::vector<Eigen::VectorXf> beyond_;  ///< what a subtree, by its root, or a shared supernode takes off rows below
     Eigen::VectorXf x_;
 };
 

@@ -165,6 +165,7 @@ void Contact::make_body_trees() {
 void Contact::set_body(const Points& body) {
     body_ = body;
     body_moved_ = true;
+    active_at_.clear();
 }
 
 std::array<Vec3, 4> Contact::corners(const Points& x, const ContactPair& p) const {
@@ -189,7 +190,7 @@ bool Contact::near_in_cloth(const ContactPair& p) const {
 }
 
 std::vector<double> Contact::moved_since_built(const Points& x) const {
-    std::vector<double> d(nodes_ + body_.size(), 0.0);
+    std::vector<double> d(nodes_ + (body_moved_ ? body_.size() : 0));
     for (int i = 0; i < nodes_; ++i) d[i] = (x[i] - built_at_[i]).norm();
     if (body_moved_)
         for (std::size_t v = 0; v < body_.size(); ++v) d[nodes_ + v] = (body_[v] - body_built_at_[v]).norm();
@@ -197,8 +198,9 @@ std::vector<double> Contact::moved_since_built(const Points& x) const {
 }
 
 double Contact::moved(const std::vector<double>& d, const ContactPair& p) const {
-    if (p.edge_edge) return std::max(d[p.p[0]], d[p.p[1]]) + std::max(d[p.p[2]], d[p.p[3]]);
-    return d[p.p[0]] + std::max({d[p.p[1]], d[p.p[2]], d[p.p[3]]});
+    const auto of = [&d](int i) { return i < int(d.size()) ? d[i] : 0; }; // a body at rest has no places in the list
+    if (p.edge_edge) return std::max(of(p.p[0]), of(p.p[1])) + std::max(of(p.p[2]), of(p.p[3]));
+    return of(p.p[0]) + std::max({of(p.p[1]), of(p.p[2]), of(p.p[3])});
 }
 
 bool Contact::body_serves(const Points* body_dx) const {
@@ -254,6 +256,7 @@ bool Contact::prepare(const Points& x, const Eigen::VectorXd& dx, const Points* 
 
 /// Finds the pairs that have a node that has moved, in place of those that the list has of them.
 void Contact::find_pairs(const std::vector<char>& moved_node) {
+    active_at_.clear();
     const Points& x = built_at_;
     const int triangles = int(cloth_.triangles.size()), edges = int(cloth_.edges.size());
     const double reach_body = options_.body.distance, reach_cloth = options_.cloth.distance;
@@ -371,7 +374,8 @@ void Contact::find_pairs(const std::vector<char>& moved_node) {
     });
 }
 
-std::vector<ActivePair> Contact::active(const Points& x) const {
+const std::vector<ActivePair>& Contact::active(const Points& x) const {
+    if (x == active_at_) return active_;
     const Stopwatch::Lap lap(clock_);
     const std::vector<double> distance = moved_since_built(x);
     const int n = int(pairs_.size()), chunk = 1024, chunks = (n + chunk - 1) / chunk;
@@ -388,9 +392,10 @@ std::vector<ActivePair> Contact::active(const Points& x) const {
                 found[c].push_back(a);
             }
     });
-    std::vector<ActivePair> all;
-    for (const auto& f : found) all.insert(all.end(), f.begin(), f.end());
-    return all;
+    active_.clear();
+    for (const auto& f : found) active_.insert(active_.end(), f.begin(), f.end());
+    active_at_ = x;
+    return active_;
 }
 
 double Contact::value(const std::vector<ActivePair>& active) const {
@@ -462,7 +467,7 @@ void Contact::couplings(const std::vector<ActivePair>& active, std::vector<std::
 }
 
 std::vector<double> Contact::lengths(const Eigen::VectorXd& dx, const Points* body_dx) const {
-    std::vector<double> step(nodes_ + body_.size(), 0.0);
+    std::vector<double> step(nodes_ + (body_dx ? body_.size() : 0));
     for (int i = 0; i < nodes_; ++i) step[i] = dx.segment<3>(3 * i).norm();
     if (body_dx)
         for (std::size_t v = 0; v < body_.size(); ++v) step[nodes_ + v] = (*body_dx)[v].norm();

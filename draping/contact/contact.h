@@ -82,8 +82,9 @@ public:
     /// on the list. Does nothing and returns false while the current list still serves.
     bool prepare(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx = nullptr);
 
-    /// The pairs of the list whose barrier acts at x.
-    std::vector<ActivePair> active(const Points& x) const;
+    /// The pairs of the list whose barrier acts at x. Those of the last x asked for are kept, since a solver asks again for
+    /// the state that it has stepped to; what is returned is good until the next call.
+    const std::vector<ActivePair>& active(const Points& x) const;
 
     double value(const std::vector<ActivePair>& active) const;
     void add_gradient(const std::vector<ActivePair>& active, Eigen::VectorXd& g) const;
@@ -157,6 +158,8 @@ private:
     std::vector<char> left_out_;
     bool built_ = false;
     std::vector<ContactPair> pairs_;
+    mutable std::vector<ActivePair> active_; ///< at active_at_, while the list and the body are what they were
+    mutable Points active_at_;
     std::vector<int> triangle_of_node_; ///< one of each node's
     double most_slack_ = 0;             ///< m, beyond the step itself
     bool body_moved_ = false;        ///< since body_built_at_

@@ -1,7 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/solve/free_cloth.h"
 
+#include <algorithm>
+
 namespace toile {
+
+FreeCloth::FreeCloth(std::unique_ptr<Energy> energy, std::vector<double> node_mass, bool projected)
+    : NodeProblem(std::move(node_mass)), energy_(std::move(energy)), projected_(projected) {
+    energy_->couplings(cloth_couplings_);
+    for (auto& [a, b] : cloth_couplings_)
+        if (a > b) std::swap(a, b);
+    std::sort(cloth_couplings_.begin(), cloth_couplings_.end());
+    cloth_couplings_.erase(std::unique(cloth_couplings_.begin(), cloth_couplings_.end()), cloth_couplings_.end());
+}
 
 double FreeCloth::value(const Points& x) { return energy_->value(x) + toile::value(*this, node_mass_, x); }
 
@@ -13,8 +24,7 @@ void FreeCloth::gradient(const Points& x, Eigen::VectorXd& g) {
 }
 
 void FreeCloth::make_pattern() {
-    std::vector<std::pair<int, int>> pairs;
-    energy_->couplings(pairs);
+    std::vector<std::pair<int, int>> pairs = cloth_couplings_;
     couplings(*this, pairs);
     more_couplings(pairs);
     matrix_ = BlockMatrix(points(), pairs);

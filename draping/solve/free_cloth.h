@@ -12,8 +12,7 @@ namespace toile {
 class FreeCloth : public NodeProblem {
 public:
     /// `projected`: whether hessian() gives a positive semidefinite stand-in when it is not asked for the exact one.
-    FreeCloth(std::unique_ptr<Energy> energy, std::vector<double> node_mass, bool projected = true)
-        : NodeProblem(std::move(node_mass)), energy_(std::move(energy)), projected_(projected) {}
+    FreeCloth(std::unique_ptr<Energy> energy, std::vector<double> node_mass, bool projected = true);
 
     const Energy& energy() const { return *energy_; }
     bool take_up(const Points& x) { return energy_->take_up(x); } ///< see Energy
@@ -41,6 +40,7 @@ private:
     void make_pattern();
 
     bool projected_;
+    std::vector<std::pair<int, int>> cloth_couplings_; ///< of the energy, each once
     BlockMatrix matrix_;
     bool matrix_made_ = false;
 };

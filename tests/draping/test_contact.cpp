@@ -139,6 +139,35 @@ TEST_CASE("contact: a list that is kept up finds the pairs of a new one") {
     }
 }
 
+TEST_CASE("contact: active pairs asked for again are those of the body and the list at hand") {
+    const Points x = near_contact();
+    const TriMesh body = tetrahedron();
+    const Eigen::VectorXd still = Eigen::VectorXd::Zero(18);
+    Contact contact(two_sheets(), body, options());
+    contact.prepare(x, still);
+    const auto distances = [](const Contact& c, const Points& at) {
+        std::vector<double> d;
+        for (const ActivePair& a : c.active(at)) d.push_back(a.geometry.d);
+        return d;
+    };
+    const std::vector<double> first = distances(contact, x);
+    REQUIRE(!first.empty());
+    CHECK(distances(contact, x) == first);
+
+    TriMesh lower = body;
+    for (Vec3& p : lower.points) p.y() -= 2e-4;
+    contact.set_body(lower.points);
+    Contact fresh(two_sheets(), lower, options());
+    fresh.prepare(x, still);
+    const std::vector<double> then = distances(fresh, x);
+    CHECK(then != first);
+    CHECK(distances(contact, x) == then);
+
+    contact.leave_out(std::vector<char>(6, 1));
+    contact.prepare(x, still);
+    CHECK(distances(contact, x).size() < then.size());
+}
+
 TEST_CASE("contact: pairs that may come within reach are all that do") {
     Random random(5);
     const ContactCloth cloth = two_sheets();

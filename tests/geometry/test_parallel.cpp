@@ -73,3 +73,15 @@ TEST_CASE("parallel_for uses several threads, may be nested and hands exceptions
                                  }),
                     std::runtime_error);
 }
+
+TEST_CASE("parallel_both runs both and hands exceptions on") {
+    RestoreThreads restore;
+    for (const int t : {1, 2}) {
+        set_threads(t);
+        int a = 0, b = 0;
+        parallel_both([&] { a = 1; }, [&] { b = 2; });
+        CHECK(a == 1);
+        CHECK(b == 2);
+        CHECK_THROWS_AS(parallel_both([] {}, [] { throw std::runtime_error("x"); }), std::runtime_error);
+    }
+}

@@ -119,7 +119,7 @@ Held let_go(const Fabric& fabric, double friction, double angle, double widens, 
     const Points start = b.x;
     problem.hooks.clear();
     problem.rest_here(b.x, {friction}, true);
-    options.max_iterations = 100;
+    options.max_iterations = 200; // a band that slides goes on sliding, by a millimetre in some ten iterations
     options.tolerance = 1e-5;
     h.settled = settle(problem, b.x, factor, options).end == SettleEnd::settled;
     for (std::size_t i = 0; i < start.size(); ++i) {

@@ -32,7 +32,7 @@ struct GrainTriangle {
     double weft = 0, warp = 0, shear = 0; ///< stiffness times area, J
 };
 
-/// Triangle t of the garment with all that its fabric resists.
+/// Triangle t of the garment with all that its fabric resists; measured curves by the numbers that stand for them.
 GrainTriangle make_grain_triangle(const Garment& garment, const Fabric& fabric, int t);
 
 } // namespace toile

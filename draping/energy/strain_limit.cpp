@@ -128,12 +128,23 @@ double strain_scale(double largest) {
     return largest == never ? 0 : 0.25 * (largest - 1) * (largest - 1);
 }
 
+/// Of the straight line with which the membrane would hold as much at the limit.
+double stiffness_at(double largest, double constant, const std::vector<StretchPoint>& curve) {
+    if (curve.empty() || largest == never) return constant;
+    return secants(membrane_curve(curve), 0.5 * (largest - 1)).by_energy;
+}
+
 } // namespace
 
 std::vector<StrainLimit> make_strain_limits(const Garment& garment, const std::vector<Fabric>& fabrics) {
     std::vector<StrainLimit> limits;
+    std::vector<Vec2> stiffness; // of weft and warp, per panel
+    for (const Fabric& f : fabrics)
+        stiffness.emplace_back(stiffness_at(squared_limit(f.limit_weft), f.stretch_weft, f.curve_weft),
+                               stiffness_at(squared_limit(f.limit_warp), f.stretch_warp, f.curve_warp));
     for (int t = 0; t < int(garment.triangles.size()); ++t) {
         const Fabric& fabric = fabrics[garment.panel_of_triangle[t]];
+        const Vec2& resisted = stiffness[garment.panel_of_triangle[t]];
         const Mat2& edges = garment.rest.edges[t];
         StrainLimit limit;
         limit.nodes = garment.nodes(t);
@@ -144,8 +155,8 @@ std::vector<StrainLimit> make_strain_limits(const Garment& garment, const std::v
         // As much energy as the membrane holds at the limit: the barrier is about as stiff as the cloth where
         // it begins, and many times as stiff near the limit.
         const double area = rest_area(edges);
-        limit.weft_stiffness = area * fabric.stretch_weft * strain_scale(limit.weft);
-        limit.warp_stiffness = area * fabric.stretch_warp * strain_scale(limit.warp);
+        limit.weft_stiffness = area * resisted[0] * strain_scale(limit.weft);
+        limit.warp_stiffness = area * resisted[1] * strain_scale(limit.warp);
         limit.shear_stiffness = limit.shear == never ? 0 : area * fabric.shear * limit.shear;
         limits.push_back(limit);
     }

@@ -2,6 +2,7 @@
 #include "draping/energy/stretch.h"
 
 #include "geometry/parallel.h"
+#include "geometry/text.h"
 
 #include <Eigen/Dense>
 
@@ -25,23 +26,53 @@ int edge_end(int k) {
     return (k + 2) % 3;
 }
 
-Mat3 moduli(const Fabric& f) {
-    const double minor = f.poisson * f.stretch_weft / f.stretch_warp;
+/// What all triangles of a fabric share.
+struct Resistance {
+    double weft = 0, warp = 0; ///< N/m; of curves, the first slopes
+    Mat3 full;
+    std::shared_ptr<const MembraneCurves> curves;
+};
+
+Mat3 moduli(const Fabric& f, double weft, double warp) {
+    const double minor = f.poisson * weft / warp;
     const double scale = 1 / (1 - f.poisson * minor);
-    if (!(f.stretch_warp > 0 && f.stretch_weft > 0 && f.shear > 0 && f.poisson >= 0 && scale > 0))
+    if (!(warp > 0 && weft > 0 && f.shear > 0 && f.poisson >= 0 && scale > 0))
         throw std::invalid_argument(
             "fabric \"" + f.name +
             "\": stretch_warp, stretch_weft and shear must be positive and poisson between 0 "
             "and the root of stretch_warp / stretch_weft");
     Mat3 c = Mat3::Zero();
-    c(0, 0) = scale * f.stretch_weft;
-    c(1, 1) = scale * f.stretch_warp;
-    c(0, 1) = c(1, 0) = scale * f.poisson * f.stretch_weft;
+    c(0, 0) = scale * weft;
+    c(1, 1) = scale * warp;
+    c(0, 1) = c(1, 0) = scale * f.poisson * weft;
     c(2, 2) = f.shear;
     return c;
 }
 
-StretchElement make_element(const Mat2& rest, const Fabric& fabric, const Patch& patch) {
+void refuse_softening(const Fabric& f, const Resistance& r) {
+    const auto lost = [](const StretchCurve& curve) { return curve.empty() ? 0.0 : curve.first_slope() - least_slope(curve); };
+    const double weft = r.full(0, 0) - lost(r.curves->weft), warp = r.full(1, 1) - lost(r.curves->warp);
+    if (weft > 0 && warp > 0 && weft * warp > r.full(0, 1) * r.full(0, 1)) return;
+    throw std::invalid_argument("fabric \"" + f.name + "\": its stretch curves become too flat for a Poisson ratio of " +
+                                text("%.3g: expected the product of their least slopes to stay above about %.2g of that of "
+                                     "their first",
+                                     f.poisson, f.poisson * f.poisson * r.weft / r.warp));
+}
+
+Resistance resistance_of(const Fabric& f) {
+    Resistance r{f.stretch_weft, f.stretch_warp, Mat3::Zero(), nullptr};
+    if (!f.curve_weft.empty() || !f.curve_warp.empty()) {
+        const MembraneCurves curves{membrane_curve(f.curve_weft), membrane_curve(f.curve_warp)};
+        if (!curves.weft.empty()) r.weft = curves.weft.first_slope();
+        if (!curves.warp.empty()) r.warp = curves.warp.first_slope();
+        r.curves = std::make_shared<const MembraneCurves>(curves);
+    }
+    r.full = moduli(f, r.weft, r.warp);
+    if (r.curves) refuse_softening(f, r);
+    return r;
+}
+
+StretchElement make_element(const Mat2& rest, const Resistance& resistance, double compression, const Patch& patch) {
     StretchElement element;
     element.patch = patch;
     element.area = rest_area(rest);
@@ -53,10 +84,11 @@ StretchElement make_element(const Mat2& rest, const Fabric& fabric, const Patch&
         squares.row(k) << e.x() * e.x(), e.y() * e.y(), e.x() * e.y();
     }
     element.to_strain = squares.inverse();
-    element.full = moduli(fabric);
-    element.weft = fabric.stretch_weft;
-    element.warp = fabric.stretch_warp;
-    element.compression = fabric.compression;
+    element.full = resistance.full;
+    element.weft = resistance.weft;
+    element.warp = resistance.warp;
+    element.compression = compression;
+    element.curves = resistance.curves;
     return element;
 }
 
@@ -112,26 +144,62 @@ Vec3 tensile(const Vec3& stress) {
     return {kept(0, 0), kept(1, 1), kept(0, 1)};
 }
 
+// What a measured curve has more than the straight line of its first slope; nothing under compression.
+CurveState beyond_line(const StretchCurve& curve, double strain) {
+    if (curve.empty() || strain <= 0) return {};
+    CurveState at = evaluate(curve, strain);
+    const double k = curve.first_slope();
+    at.energy -= 0.5 * k * strain * strain;
+    at.tension -= k * strain;
+    at.slope -= k;
+    return at;
+}
+
 } // namespace
 
 StretchResponse stretch_response(const StretchElement& element, const Vec3& strain) {
     const double share = element.compression;
-    const Vec3 full = element.full * strain;
+    StretchResponse full{0, element.full * strain, element.full};
     StretchResponse slack{0, Vec3::Zero(), Mat3::Zero()};
-    if (full[0] >= 0 && full[1] >= 0) return {0.5 * strain.dot(full), full, element.full};
-    const bool weft = full[1] < 0 && strain[0] > 0, warp = full[0] < 0 && strain[1] > 0;
+    full.energy = 0.5 * strain.dot(full.stress);
+    CurveState more[2];
+    if (element.curves) {
+        more[0] = beyond_line(element.curves->weft, strain[0]);
+        more[1] = beyond_line(element.curves->warp, strain[1]);
+        for (int c = 0; c < 2; ++c) {
+            full.energy += more[c].energy;
+            full.stress[c] += more[c].tension;
+            full.tangent(c, c) += more[c].slope;
+        }
+    }
+    if (full.stress[0] >= 0 && full.stress[1] >= 0) return full;
+    const bool weft = full.stress[1] < 0 && strain[0] > 0, warp = full.stress[0] < 0 && strain[1] > 0;
     if (weft) slack.tangent(0, 0) = element.weft;
     if (warp) slack.tangent(1, 1) = element.warp;
     slack.tangent(2, 2) = element.full(2, 2);
     slack.stress = slack.tangent * strain;
-    return {0.5 * ((1 - share) * strain.dot(slack.stress) + share * strain.dot(full)),
-            (1 - share) * slack.stress + share * full, (1 - share) * slack.tangent + share * element.full};
+    slack.energy = 0.5 * strain.dot(slack.stress);
+    if (element.curves)
+        for (int c = 0; c < 2; ++c) {
+            if (!(c == 0 ? weft : warp)) continue;
+            slack.energy += more[c].energy;
+            slack.stress[c] += more[c].tension;
+            slack.tangent(c, c) += more[c].slope;
+        }
+    return {(1 - share) * slack.energy + share * full.energy, (1 - share) * slack.stress + share * full.stress,
+            (1 - share) * slack.tangent + share * full.tangent};
+}
+
+void check_membrane(const Fabric& fabric) {
+    resistance_of(fabric);
 }
 
 std::vector<StretchElement> make_stretch(const Garment& garment, const std::vector<Fabric>& fabrics,
                                          const StretchOptions& options) {
     std::vector<Patch> patches;
     if (options.arc_edges) patches = make_patches(garment);
+    std::vector<Resistance> resistances;
+    for (const Fabric& fabric : fabrics) resistances.push_back(resistance_of(fabric));
     std::vector<StretchElement> elements;
     for (int t = 0; t < int(garment.triangles.size()); ++t) {
         Patch patch;
@@ -143,7 +211,8 @@ std::vector<StretchElement> make_stretch(const Garment& garment, const std::vect
             std::copy(nodes.begin(), nodes.end(), patch.nodes.begin());
             patch.curve.setZero();
         }
-        elements.push_back(make_element(garment.rest.edges[t], fabrics[garment.panel_of_triangle[t]], patch));
+        const int panel = garment.panel_of_triangle[t];
+        elements.push_back(make_element(garment.rest.edges[t], resistances[panel], fabrics[panel].compression, patch));
     }
     return elements;
 }

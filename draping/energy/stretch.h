@@ -7,6 +7,8 @@
 #include "draping/energy/patch.h"
 #include "draping/fabric/fabric.h"
 
+#include <memory>
+
 namespace toile {
 
 struct StretchOptions {
@@ -17,10 +19,22 @@ struct StretchOptions {
     bool arc_edges = true;
 };
 
+/// The measured curves of a fabric, by Green's strain; the other direction may have none.
+struct MembraneCurves {
+    StretchCurve weft, warp;
+};
+
 /// One triangle: constant Green strain (weft, warp, twice shear) from the lengths of its three edges;
 /// W per area = (1 - compression) W_slack + compression W_full, with W_full = 1/2 e C e and W_slack its
 /// minimum when warp and weft may each be shortened at will: a yarn that would be compressed carries nothing
 /// and the other answers as in a uniaxial test. Convex in strain, once continuously differentiable.
+///
+/// With measured curves of energy P (strain) and first slopes k, C is that of the slopes and
+///   W_full = 1/2 e C e + [P_weft(e_weft) - 1/2 k_weft e_weft^2] + [P_warp(e_warp) - 1/2 k_warp e_warp^2]:
+/// the Poisson coupling stays that of the first slopes. A strip pulled along either direction then answers with exactly its
+/// curve and contracts by the constant ratios of C, since what is contracted is on the straight part of its own curve; a
+/// straight curve leaves W as it is. W_slack has P in place of 1/2 k e^2. It is convex where the product of the
+/// curves' slopes stays above about poisson^2 k_weft / k_warp of that of the first; others are refused.
 struct StretchElement {
     Patch patch;
     Mat3 to_strain;            ///< strain = to_strain g, g_k = 1/2 (|e_k|^2 - l_k^2) + |q_k|^2 / 24, m^2
@@ -29,14 +43,17 @@ struct StretchElement {
     Mat3 full;                 ///< C, N/m
     double weft = 0, warp = 0; ///< uniaxial stiffness, N/m
     double compression = 0;
+    std::shared_ptr<const MembraneCurves> curves; ///< null: constant stiffness
 };
 
 /// Block of 3 patch.count rows and columns.
 using StretchHessian =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, 3 * Patch::max_nodes, 3 * Patch::max_nodes>;
 
-/// `fabrics` has one entry per panel. Throws std::invalid_argument for a fabric whose stiffness is not
-/// positive definite.
+/// Throws std::invalid_argument for a fabric whose stiffness is not positive definite, anywhere on its curves.
+void check_membrane(const Fabric& fabric);
+
+/// `fabrics` has one entry per panel. Throws as check_membrane().
 std::vector<StretchElement> make_stretch(const Garment& garment, const std::vector<Fabric>& fabrics,
                                          const StretchOptions& options = {});
 

@@ -48,22 +48,32 @@ struct Between {
     }
 };
 
-double energy(const GrainTriangle& t, const GrainImages& y) {
-    const Between b(y);
-    const double u = b.length[0] - 1, v = b.length[1] - 1, gamma = b.gamma();
-    return 0.5 * (t.weft * u * u + t.warp * v * v + t.shear * gamma * gamma);
+/// Of weft (0) or warp (1) stretched by s, J.
+CurveSecants resistance(const CurvedTriangle& t, int c, double s) {
+    const double k = c == 0 ? t.weft : t.warp;
+    if (!t.curves || (*t.curves)[c].empty()) return {k, k, k};
+    const CurveSecants r = secants((*t.curves)[c], s);
+    return {t.area * r.by_energy, t.area * r.by_tension, t.area * r.slope};
 }
 
-GrainSlope slope(const GrainTriangle& t, const GrainImages& y) {
+double energy(const CurvedTriangle& t, const GrainImages& y) {
+    const Between b(y);
+    const double u = b.length[0] - 1, v = b.length[1] - 1, gamma = b.gamma();
+    return 0.5 * (resistance(t, 0, u).by_energy * u * u + resistance(t, 1, v).by_energy * v * v + t.shear * gamma * gamma);
+}
+
+GrainSlope slope(const CurvedTriangle& t, const GrainImages& y) {
     const Between b(y);
     GrainSlope g = t.shear * b.gamma() / b.sine * b.cosine_slope();
-    g.head<3>() += t.weft * (b.length[0] - 1) * b.unit[0];
-    g.tail<3>() += t.warp * (b.length[1] - 1) * b.unit[1];
+    for (int c = 0; c < 2; ++c) {
+        const double s = b.length[c] - 1;
+        g.segment<3>(3 * c) += resistance(t, c, s).by_tension * s * b.unit[c];
+    }
     return g;
 }
 
 /// Projected: yarns under compression without what turns them, and shear without the second derivative of its angle.
-GrainBend bend(const GrainTriangle& t, const GrainImages& y, HessianKind kind) {
+GrainBend bend(const CurvedTriangle& t, const GrainImages& y, HessianKind kind) {
     const Between b(y);
     const GrainSlope c = b.cosine_slope();
     GrainBend h = t.shear / (b.sine * b.sine) * c * c.transpose();
@@ -73,8 +83,10 @@ GrainBend bend(const GrainTriangle& t, const GrainImages& y, HessianKind kind) {
     for (int k = 0; k < 2; ++k) {
         double turning = 1 - 1 / b.length[k];
         if (kind == HessianKind::projected) turning = std::max(turning, 0.0);
+        const CurveSecants r = resistance(t, k, b.length[k] - 1);
         const Mat3 along = b.unit[k] * b.unit[k].transpose();
-        h.block<3, 3>(3 * k, 3 * k) += (k == 0 ? t.weft : t.warp) * (along + turning * (Mat3::Identity() - along));
+        h.block<3, 3>(3 * k, 3 * k) +=
+            r.by_tension * (r.slope / r.by_tension * along + turning * (Mat3::Identity() - along));
     }
     return h;
 }
@@ -95,19 +107,29 @@ template <int N> void add_product(const Constraint& c, double share, BlockMatrix
 
 TriangleCloth::TriangleCloth(const Garment& garment, const std::vector<Fabric>& fabrics, double damping_time)
     : bends_(make_hinge_bends(garment, fabrics)), damping_time_(damping_time) {
-    for (int t = 0; t < int(garment.triangles.size()); ++t)
-        triangles_.push_back(make_grain_triangle(garment, fabrics[garment.panel_of_triangle[t]], t));
+    std::vector<std::shared_ptr<const std::array<StretchCurve, 2>>> curves; // per panel
+    for (const Fabric& f : fabrics) {
+        curves.emplace_back();
+        if (!f.curve_weft.empty() || !f.curve_warp.empty())
+            curves.back() = std::make_shared<const std::array<StretchCurve, 2>>(
+                std::array{stretch_curve(f.curve_weft), stretch_curve(f.curve_warp)});
+    }
+    for (int t = 0; t < int(garment.triangles.size()); ++t) {
+        const int panel = garment.panel_of_triangle[t];
+        triangles_.push_back(
+            {make_grain_triangle(garment, fabrics[panel], t), rest_area(garment.rest.edges[t]), curves[panel]});
+    }
 }
 
 double TriangleCloth::value(const Points& x) const {
     double sum = toile::value(bends_, x);
-    for (const GrainTriangle& t : triangles_) sum += energy(t, grain_images(t.nodes, t.shape, x));
+    for (const CurvedTriangle& t : triangles_) sum += energy(t, grain_images(t.nodes, t.shape, x));
     return sum;
 }
 
 void TriangleCloth::add_gradient(const Points& x, Eigen::VectorXd& g) const {
     toile::add_gradient(bends_, x, g);
-    for (const GrainTriangle& t : triangles_) {
+    for (const CurvedTriangle& t : triangles_) {
         const GrainSlope s = slope(t, grain_images(t.nodes, t.shape, x));
         for (int k = 0; k < 3; ++k)
             g.segment<3>(3 * t.nodes[k]) += at_corner(t.shape, s, k);
@@ -116,18 +138,19 @@ void TriangleCloth::add_gradient(const Points& x, Eigen::VectorXd& g) const {
 
 Constraint TriangleCloth::constraint(int k, const Points& x) const {
     if (k >= int(3 * triangles_.size())) return toile::constraint(bends_[k - 3 * triangles_.size()], x);
-    const GrainTriangle& t = triangles_[k / 3];
+    const CurvedTriangle& t = triangles_[k / 3];
     const Between b(grain_images(t.nodes, t.shape, x));
     const int which = k % 3;
     GrainSlope s = GrainSlope::Zero();
     Constraint c;
     c.count = 3;
-    c.stiffness = which == 0 ? t.weft : which == 1 ? t.warp : t.shear;
     if (which == 2) {
+        c.stiffness = t.shear;
         c.value = b.gamma();
         s = b.cosine_slope() / b.sine;
     } else {
         c.value = b.length[which] - 1;
+        c.stiffness = resistance(t, which, c.value).by_tension;
         s.segment<3>(3 * which) = b.unit[which];
     }
     for (int i = 0; i < 3; ++i) {
@@ -160,13 +183,13 @@ void TriangleCloth::add_damping_matrix(const Points& x, double factor, BlockMatr
 
 void TriangleCloth::couplings(std::vector<std::pair<int, int>>& pairs) const {
     toile::couplings(bends_, pairs);
-    for (const GrainTriangle& t : triangles_)
+    for (const CurvedTriangle& t : triangles_)
         for (int k = 0; k < 3; ++k) pairs.emplace_back(t.nodes[k], t.nodes[(k + 1) % 3]);
 }
 
 void TriangleCloth::add_hessian(const Points& x, HessianKind kind, BlockMatrix& h) const {
     toile::add_hessian(bends_, x, kind, h);
-    for (const GrainTriangle& t : triangles_)
+    for (const CurvedTriangle& t : triangles_)
         h.add_element(t.nodes, at_corners(t.shape, bend(t, grain_images(t.nodes, t.shape, x), kind)));
 }
 

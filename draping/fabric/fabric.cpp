@@ -10,7 +10,22 @@ namespace {
 constexpr double micro = 1e-6, milli = 1e-3;
 constexpr double degree = 3.14159265358979323846 / 180;
 
+double standing_for(const std::vector<StretchPoint>& points) {
+    check_points(points);
+    membrane_curve(points); // or it would be refused only when it is draped
+    return secants(stretch_curve(points), secant_stretch).by_tension;
+}
+
 // docs/fabrics.md has the references, the measured figures beside these, and how the remaining ones were chosen.
+
+/// Wang 2011 has the stiffness of a strip, stress over Green's strain, flat and at a stretch of 1/6, and linear between; here up
+/// to `limit`.
+std::vector<StretchPoint> measured(double flat, double at_sixth, double limit) {
+    std::vector<StretchPoint> points{{}};
+    for (const double s : {0.01, 0.03, 0.06, 0.1, 1.0 / 6, 0.25, 0.35, 0.5, 0.8})
+        if (s <= limit) points.push_back({s, (1 + s) * (flat + (at_sixth - flat) * 6 * s) * s * (1 + s / 2)});
+    return points;
+}
 
 Fabric poplin() {
     Fabric f;
@@ -148,9 +163,11 @@ Fabric jersey() {
     Fabric f;
     f.name = "jersey";
     f.density = 0.17;
-    f.stretch_warp = 120;
+    f.limit_warp = 0.35;
+    f.limit_weft = 0.5;
+    set_warp_curve(f, measured(34.5, 348, f.limit_warp));
+    set_weft_curve(f, measured(16.6, 35.3, f.limit_weft));
     f.compression = 1;
-    f.stretch_weft = 46;
     f.poisson = 0.3;
     f.shear = 37;
     f.bend_warp = 13 * micro;
@@ -159,10 +176,8 @@ Fabric jersey() {
     f.thickness = 0.6 * milli;
     f.friction = 0.35;
     f.cloth_friction = 0.30;
-    f.limit_warp = 0.25;
-    f.limit_weft = 0.5;
     f.limit_shear = 45 * degree;
-    f.source = "stretch and shear: between the first and the last modulus of an interlock, Wang 2011; bending: "
+    f.source = "stretch curves up to 1/6 and shear: an interlock, Wang 2011, beyond 1/6 continued by the same law; bending: "
                "medians at 0.14-0.18 kg/m2, Feng 2022; limits: chosen";
     return f;
 }
@@ -171,9 +186,11 @@ Fabric rib() {
     Fabric f;
     f.name = "rib";
     f.density = 0.276;
-    f.stretch_warp = 150;
+    f.limit_warp = 0.35;
+    f.limit_weft = 0.8;
+    set_warp_curve(f, measured(65.2, 254.6, f.limit_warp));
+    set_weft_curve(f, measured(42.9, 52.2, f.limit_weft));
     f.compression = 1;
-    f.stretch_weft = 43;
     f.poisson = 0.3;
     f.shear = 60;
     f.bend_warp = 46 * micro;
@@ -182,14 +199,23 @@ Fabric rib() {
     f.thickness = 1.0 * milli;
     f.friction = 0.40;
     f.cloth_friction = 0.30;
-    f.limit_warp = 0.35;
-    f.limit_weft = 0.8;
     f.limit_shear = 45 * degree;
-    f.source = "density, stretch, shear, bending: rib knit, Wang 2011; limits: chosen";
+    f.source = "density, stretch curves up to 1/6, shear, bending: rib knit, Wang 2011, beyond 1/6 continued by the same law; "
+               "limits: chosen";
     return f;
 }
 
 } // namespace
+
+void set_warp_curve(Fabric& fabric, std::vector<StretchPoint> points) {
+    fabric.stretch_warp = standing_for(points);
+    fabric.curve_warp = std::move(points);
+}
+
+void set_weft_curve(Fabric& fabric, std::vector<StretchPoint> points) {
+    fabric.stretch_weft = standing_for(points);
+    fabric.curve_weft = std::move(points);
+}
 
 const std::vector<Fabric>& fabric_presets() {
     static const std::vector<Fabric> presets = {poplin(), denim(), silk(),   wool(),

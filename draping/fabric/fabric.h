@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <string>
-#include <vector>
+#include "draping/fabric/stretch_curve.h"
 
 namespace toile {
 
@@ -18,6 +17,9 @@ struct Fabric {
     double density = 0;        ///< kg/m2
     double stretch_warp = 0;   ///< N/m, of a strip pulled along the warp and free to contract
     double stretch_weft = 0;   ///< N/m
+    /// Of a knit (warp: along its wales, weft: along its courses) instead of constant stiffness; empty: that. Given by
+    /// set_warp_curve() and set_weft_curve(), since models that have no curves go by the numbers above (docs/methods.md).
+    std::vector<StretchPoint> curve_warp, curve_weft;
     double poisson = 0;        ///< major Poisson ratio: contraction of the weft under warp tension, [0, 0.5)
     double shear = 0;          ///< N/m per rad of shear angle
     double bend_warp = 0;      ///< N m, resistance to curving a warp yarn
@@ -33,6 +35,13 @@ struct Fabric {
     double limit_shear = 0;    ///< locking angle of shear, rad
     std::string source;        ///< where the figures come from
 };
+
+/// Where a model has no curves, the secant at this stretch stands for one: about the most that garments at rest are stretched by.
+constexpr double secant_stretch = 0.1;
+
+/// The curve, and the number that stands for it. Throw std::invalid_argument as membrane_curve().
+void set_warp_curve(Fabric& fabric, std::vector<StretchPoint> points);
+void set_weft_curve(Fabric& fabric, std::vector<StretchPoint> points);
 
 /// Presets by name: poplin denim silk wool linen leather jersey rib.
 const std::vector<Fabric>& fabric_presets();

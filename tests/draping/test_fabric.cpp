@@ -60,7 +60,30 @@ TEST_CASE("presets are ordered as a tailor would order them", "[fabric]") {
     ascending(&Fabric::density, {"silk", "poplin", "jersey", "linen", "wool", "rib", "denim", "leather"});
     ascending(&Fabric::bend_warp, {"silk", "poplin", "wool", "linen", "denim", "leather"});
     ascending(&Fabric::thickness, {"silk", "poplin", "linen", "denim", "leather"});
-    ascending(&Fabric::stretch_weft, {"rib", "jersey", "wool", "silk", "poplin", "linen", "leather"});
+    ascending(&Fabric::stretch_weft, {"jersey", "rib", "wool", "silk", "poplin", "linen", "leather"});
     ascending(&Fabric::limit_weft, {"linen", "poplin", "wool", "leather", "jersey", "rib"});
     ascending(&Fabric::limit_shear, {"leather", "denim", "poplin", "linen", "wool", "silk", "jersey"});
+}
+
+TEST_CASE("knits have curves of stretch, soft first and stiff later, up to their limits; wovens a number", "[fabric]") {
+    for (const Fabric& f : fabric_presets()) {
+        INFO(f.name);
+        const bool knit = f.name == "jersey" || f.name == "rib";
+        CHECK(f.curve_warp.empty() != knit);
+        CHECK(f.curve_weft.empty() != knit);
+        if (!knit) continue;
+        CHECK(f.curve_warp.back().stretch == f.limit_warp);
+        CHECK(f.curve_weft.back().stretch == f.limit_weft);
+        const auto tension = [](const std::vector<StretchPoint>& points, double s) {
+            return evaluate(stretch_curve(points), s).tension;
+        };
+        CHECK(f.stretch_warp == Approx(tension(f.curve_warp, 0.1) / 0.1));
+        CHECK(f.stretch_weft == Approx(tension(f.curve_weft, 0.1) / 0.1));
+        for (const auto& points : {f.curve_warp, f.curve_weft})
+            for (std::size_t k = 2; k < points.size(); ++k)
+                CHECK((points[k].tension - points[k - 1].tension) / (points[k].stretch - points[k - 1].stretch) >
+                      (points[k - 1].tension - points[k - 2].tension) / (points[k - 1].stretch - points[k - 2].stretch));
+        // Along the courses it gives more, at any tension.
+        for (double s = 0.01; s <= f.limit_warp; s += 0.01) CHECK(tension(f.curve_weft, s) < tension(f.curve_warp, s));
+    }
 }

@@ -129,13 +129,25 @@ Held let_go(const Fabric& fabric, double friction, double angle, double widens, 
     return h;
 }
 
+/// Of constant stiffness: tension is to be proportional to stretch, and how far nodes give before friction holds them is not to be
+/// that of a knit's soft beginning (by its curves jersey gives 0.15 mm).
+Fabric straight(const std::string& name) {
+    Fabric f = fabric_preset(name);
+    if (f.curve_warp.empty()) return f;
+    f.curve_warp.clear();
+    f.curve_weft.clear();
+    f.stretch_warp = 120;
+    f.stretch_weft = 46;
+    return f;
+}
+
 } // namespace
 
 TEST_CASE("a waistband holds on a cone within the angle of friction and slides off beyond it",
           "[validation]") {
     for (const auto& [name, strain] : {std::pair{"poplin", 0.006}, {"jersey", 0.12}})
         for (double widens : {1.0, -1.0}) {
-            const Fabric& f = fabric_preset(name);
+            const Fabric f = straight(name);
             INFO(name << (widens > 0 ? ", narrow below" : ", narrow above"));
             for (double within : {3.0, 1.0}) {
                 const Held held =

@@ -115,6 +115,23 @@ std::string growth_sentence(const DrapeFacts& f) {
     return "the body was drawn in and grew back under contact, since the cloth started in it: " + list;
 }
 
+void curve_sentences(Method method, const PanelFabrics& fabrics, std::vector<std::string>& out) {
+    std::vector<std::string> said;
+    for (const Fabric& f : fabrics) {
+        if ((f.curve_warp.empty() && f.curve_weft.empty()) || std::find(said.begin(), said.end(), f.name) != said.end()) continue;
+        said.push_back(f.name);
+        if (has_curves(method))
+            out.push_back("the stretch of " + f.name + " follows its measured curves");
+        else if (method == Method::nonconforming)
+            out.push_back("the stretch curves of " + f.name + " were left out: this method keeps all lengths");
+        else
+            out.push_back("the stretch curves of " + f.name +
+                          text(" were replaced by their secants at %.3g %% of stretch: %.3g N/m along the warp, %.3g N/m along the "
+                               "weft",
+                               100 * secant_stretch, f.stretch_warp, f.stretch_weft));
+    }
+}
+
 void limit_sentences(bool modelled, const Garment& g, const Points& x, const PanelFabrics& fabrics,
                      std::vector<std::string>& out) {
     const StrainMeasure s = measure_strain(g, x, fabrics);
@@ -203,6 +220,7 @@ std::vector<std::string> decisions(const DrapeFacts& f, const Garment& g, const 
         out.push_back(text("%d stitches to the inside of an edge stayed springs, the widest %.2g mm open; "
                            "triangles that such a stitch joins do not touch each other",
                            f.inner_stitches, 1e3 * f.inner_gap));
+    curve_sentences(f.method, fabrics, out);
     limit_sentences(f.method == Method::equilibrium, g, x, fabrics, out);
     if (!body.triangles.empty())
         out.push_back(text("the fabric's right side looks away from the body on %.1f %% of the area",

@@ -132,6 +132,10 @@ bool settles(Method m) {
     return false;
 }
 
+bool has_curves(Method m) {
+    return m == Method::equilibrium || m == Method::triangles || m == Method::xpbd;
+}
+
 std::unique_ptr<Energy> make_energy(Method method, const Garment& garment, const std::vector<Fabric>& fabrics,
                                     const MethodOptions& options) {
     switch (method) {

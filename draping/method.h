@@ -33,6 +33,9 @@ bool settles(Method method);
 /// Whether it needs panels whose edges lie along warp and weft (TriangulateOptions::grain_lattice).
 inline bool needs_grain_lattice(Method method) { return method == Method::inextensible; }
 
+/// Whether stretch follows the measured curves of a fabric; the others go by the numbers that stand for them.
+bool has_curves(Method method);
+
 struct MethodOptions {
     double time_step = 0;         ///< s, of explicit methods that of substeps; 0: that of the StepOptions, of inextensible 0.5 ms, of
                                   ///< explicit ones what is stable

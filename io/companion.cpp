@@ -4,11 +4,14 @@
 #include "draping/fabric/fabric.h"
 #include "io/json.h"
 #include "io/read_edge.h"
+#include "io/read_fabric.h"
 #include "io/write_file.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
+
+namespace fs = std::filesystem;
 
 namespace toile {
 namespace {
@@ -19,7 +22,8 @@ constexpr int max_layer = 100;
 
 class Reader {
 public:
-    Reader(const JsonView& root, Pattern& pattern) : root_(root), pattern_(pattern) {}
+    Reader(const JsonView& root, const fs::path& folder, Pattern& pattern)
+        : root_(root), folder_(folder), pattern_(pattern) {}
 
     void read() {
         root_.expect_keys({"toile", "units_in_meter", "fabric", "panels", "pins", "elastics", "seams"});
@@ -43,14 +47,20 @@ private:
     }
     template <class Read> void each(const char* key, Read&& read) { each(root_, key, read); }
 
-    static std::string read_fabric(const JsonView& v) {
+    /// A file lies where the companion does, and is read to see that it can be.
+    std::string read_fabric(const JsonView& v) const {
         const std::string name = v.string();
+        if (is_fabric_file(name)) {
+            const std::string path = (folder_ / name).string();
+            fabric_called(path);
+            return path;
+        }
         std::string list;
         for (const Fabric& f : fabric_presets()) {
             if (f.name == name) return name;
             list += (list.empty() ? "" : ", ") + f.name;
         }
-        v.fail("one of " + list);
+        v.fail("one of " + list + ", or a file of a fabric (.json)");
     }
 
     int panel_called(const JsonView& v, const std::string& name) const {
@@ -212,16 +222,17 @@ private:
     }
 
     const JsonView& root_;
+    const fs::path folder_;
     Pattern& pattern_;
     EdgeConventions edges_;
     std::size_t named_ = 0;
 };
 
-void read_text_into(const std::string& text, const std::string& name, Pattern& pattern) {
+void read_text_into(const std::string& text, const std::string& name, const fs::path& folder, Pattern& pattern) {
     const Json json = parse_json(text, name);
     const JsonView root(json, name);
     Pattern with = pattern; // left as it was when the companion is refused
-    Reader(root, with).read();
+    Reader(root, folder, with).read();
     pattern = std::move(with);
 }
 
@@ -230,15 +241,15 @@ constexpr std::uintmax_t max_bytes = JsonLimits{}.max_bytes;
 } // namespace
 
 std::string companion_path(const std::string& pattern_path) {
-    return std::filesystem::path(pattern_path).replace_extension(".toile.json").string();
+    return fs::path(pattern_path).replace_extension(".toile.json").string();
 }
 
 void read_companion(const std::string& path, Pattern& pattern) {
-    read_text_into(read_file(path, max_bytes), path, pattern);
+    read_text_into(read_file(path, max_bytes), path, fs::path(path).parent_path(), pattern);
 }
 
 void read_companion(std::istream& in, const std::string& name, Pattern& pattern) {
-    read_text_into(read_text(in, name, max_bytes), name, pattern);
+    read_text_into(read_text(in, name, max_bytes), name, {}, pattern);
 }
 
 } // namespace toile

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace toile {
 namespace {
@@ -192,6 +193,22 @@ Json inspection_json(const Inspection& i, const Garment& garment) {
     return json;
 }
 
+Json points_json(const std::vector<StretchPoint>& points) {
+    Json list = Json::array();
+    for (const StretchPoint& p : points) list.push_back({p.stretch, p.tension});
+    return list;
+}
+
+/// Of every fabric used that has some.
+Json curves_json(const PanelFabrics& fabrics) {
+    Json list = Json::array();
+    std::set<std::string> seen;
+    for (const Fabric& f : fabrics)
+        if ((!f.curve_warp.empty() || !f.curve_weft.empty()) && seen.insert(f.name).second)
+            list.push_back({{"fabric", f.name}, {"warp", points_json(f.curve_warp)}, {"weft", points_json(f.curve_weft)}});
+    return list;
+}
+
 nlohmann::ordered_json make_report(const DrapeResult& r, const TriMesh& body, const PanelFabrics& fabrics,
                                    const ReportContext& context) {
     const Points& x = r.state.positions;
@@ -238,6 +255,7 @@ nlohmann::ordered_json make_report(const DrapeResult& r, const TriMesh& body, co
         {"decisions", joined(context.decisions, r.decisions)},
         {"warnings", joined(context.warnings, r.warnings)},
     };
+    if (Json curves = curves_json(fabrics); !curves.empty()) report["stretch_curves"] = std::move(curves);
     if (!context.frames.empty()) report["frames"] = frames(context.frames);
     if (r.motion) report["motion"] = motion(*r.motion);
     return report;

@@ -3,6 +3,7 @@
 
 #include "draping/inspect.h"
 #include "geometry/text.h"
+#include "io/read_fabric.h"
 #include "io/read_garment.h"
 #include "io/report.h"
 #include "src/quantity.h"
@@ -118,7 +119,7 @@ int inspect_command(const InspectArguments& a, const Console& console) {
     std::vector<std::string> notes = read.notes;
     const TriMesh body = body_of(a, read, notes);
     PanelFabrics fabrics;
-    if (!a.fabric.empty()) fabrics.assign(read.garment.panel_names.size(), fabric_preset(a.fabric));
+    if (!a.fabric.empty()) fabrics.assign(read.garment.panel_names.size(), fabric_called(a.fabric));
     const Inspection inspection = inspect(read.garment, read.x, body, fabrics);
     if (a.json) {
         nlohmann::ordered_json json = inspection_json(inspection, read.garment);

@@ -3,6 +3,7 @@
 
 #include "geometry/memory.h"
 #include "io/companion.h"
+#include "io/read_fabric.h"
 #include "io/read_pattern.h"
 #include "io/read_staged.h"
 #include "patterns/curve.h"
@@ -35,16 +36,17 @@ void refuse_too_fine(const Pattern& pattern, double edge_length, double max_memo
 }
 
 /// The panel's own fabric, else the one asked for, else the pattern's, else poplin.
-PanelFabrics fabrics_of(const Pattern& pattern, const std::string& common) {
-    PanelFabrics fabrics;
+void take_fabrics(const Pattern& pattern, const std::string& common, DrapeInput& input) {
     for (const Panel& panel : pattern.panels) {
+        const std::string& name = panel.fabric.empty() ? common : panel.fabric;
         try {
-            fabrics.push_back(fabric_preset(panel.fabric.empty() ? common : panel.fabric));
+            input.fabrics.push_back(fabric_called(name));
         } catch (const std::invalid_argument& error) {
             throw InputError("panel " + panel.name + ": " + error.what());
         }
+        if (is_fabric_file(name)) input.fabric_files.push_back(name);
     }
-    return fabrics;
+    input.fabric = fabric_called(common).name;
 }
 
 std::string common_fabric(const Pattern& pattern, const std::string& asked) {
@@ -113,8 +115,7 @@ DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double ed
     options.levels = levels_for(edge_length);
     options.grain_lattice = grain_lattice;
     DrapeInput input;
-    input.fabric = common_fabric(pattern, fabric);
-    input.fabrics = fabrics_of(pattern, input.fabric);
+    take_fabrics(pattern, common_fabric(pattern, fabric), input);
     input.staging = stage(pattern, triangulate(pattern, options));
     return input;
 }
@@ -134,8 +135,7 @@ DrapeInput read_staged_input(const std::string& path, const std::string& fabric,
     }
     DrapeInput input;
     input.notes = std::move(staged.notes);
-    input.fabric = common_fabric(said, fabric);
-    input.fabrics = fabrics_of(said, input.fabric);
+    take_fabrics(said, common_fabric(said, fabric), input);
     for (std::size_t p = 0; p < said.panels.size(); ++p) {
         g.panel_fabrics[p] = said.panels[p].fabric;
         g.panel_layers[p] = said.panels[p].layer;

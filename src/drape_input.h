@@ -17,6 +17,7 @@ struct DrapeInput {
     Staging staging;
     PanelFabrics fabrics; ///< one per panel
     std::string fabric;   ///< name of the garment's
+    std::vector<std::string> fabric_files; ///< that fabrics came from, by panel
     std::vector<std::string> notes, warnings;
 };
 

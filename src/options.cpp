@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "src/options.h"
 
-#include "draping/fabric/fabric.h"
+#include "io/read_fabric.h"
 #include "src/quantity.h"
 
 #include <CLI/CLI.hpp>
@@ -39,10 +39,10 @@ void add_fabric(CLI::App& command, std::string& fabric, const std::string& help)
     std::string names;
     for (const Fabric& preset : fabric_presets())
         names += (names.empty() ? "" : " ") + preset.name;
-    command.add_option("--fabric", fabric, help + ": " + names)
+    command.add_option("--fabric", fabric, help + ": " + names + ", or a file by docs/fabric.schema.json (.json)")
         ->check([](const std::string& name) {
             try {
-                fabric_preset(name);
+                if (!is_fabric_file(name)) fabric_preset(name);
                 return std::string();
             } catch (const std::invalid_argument& error) {
                 return std::string(error.what());

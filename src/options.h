@@ -20,7 +20,7 @@ void add_form_measures(CLI::App& command, FormMeasures& form);
 /// --unit and --up of written OBJ files.
 void add_unit_and_up(CLI::App& command, WriteOptions& write);
 
-/// --fabric NAME, one of the presets.
+/// --fabric NAME, one of the presets or a file.
 void add_fabric(CLI::App& command, std::string& fabric, const std::string& help);
 
 } // namespace toile

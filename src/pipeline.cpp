@@ -85,7 +85,7 @@ std::vector<std::string> targets(const DrapeJob& job) {
 }
 
 /// Everything that shapes the result.
-std::string input_hash(const DrapeJob& job) {
+std::string input_hash(const DrapeJob& job, const std::vector<std::string>& fabric_files) {
     Hash hash;
     const auto add_file = [&](const std::string& path) {
         if (!path.empty() && fs::exists(path)) hash.add(read_file(path, max_file));
@@ -97,6 +97,7 @@ std::string input_hash(const DrapeJob& job) {
     add_file(job.from);
     for (const std::string& frame : job.avatar_sequence) add_file(frame);
     hash.add(job.fabric);
+    for (const std::string& file : fabric_files) add_file(file);
     for (const std::string& word : job.drape.hold)
         hash.add("hold " + word + '\n');
     hash.add(std::string("contact ") + to_string(response_of(job.drape)) + '\n');
@@ -290,10 +291,7 @@ DrapeOutcome run_job(const DrapeJob& job) {
     context.decisions = sequence.notes;
     Points core;
     parallel_both([&] { core = smoothed_toward_core(body, 0.01); },
-                  [&] {
-                      context.body_measures = measures_of(body, context.decisions);
-                      context.input_hash = input_hash(job);
-                  });
+                  [&] { context.body_measures = measures_of(body, context.decisions); });
     const Avatar avatar{body, std::move(core)};
     watch.lap(context, "read");
 
@@ -301,7 +299,9 @@ DrapeOutcome run_job(const DrapeJob& job) {
                                  ? read_staged_input(job.pattern, job.fabric, body)
                                  : input_of(pattern, job.fabric, job.edge_length, job.drape.max_memory,
                                             needs_grain_lattice(job.drape.method));
+    context.input_hash = input_hash(job, input.fabric_files);
     context.decisions.insert(context.decisions.end(), input.notes.begin(), input.notes.end());
+    refuse_targets(input.fabric_files, targets(job));
     refuse_unknown_labels(job, input.staging);
     refuse_too_many_frames(job, input.staging.levels.back().garment);
     watch.lap(context, is_staged(job.pattern) ? "read" : "triangulate");

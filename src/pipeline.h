@@ -19,7 +19,7 @@ struct DrapeJob {
     std::vector<std::string> avatar_sequence; ///< files of a body in motion, instead of `avatar`; dressed in the first
     FormMeasures form;
     bool repair_avatar = false;
-    std::string fabric;        ///< preset; empty: what the pattern says, else poplin
+    std::string fabric;        ///< preset or file; empty: what the pattern says, else poplin
     double edge_length = 0.01; ///< m, mean edge of the finest mesh; a staged mesh keeps its own
     std::string from;          ///< garment file to start from; empty: the pattern's own placement
     DrapeOptions drape;

@@ -69,6 +69,10 @@ TEST_CASE("one command makes a garment, its report and its picture, and they agr
         return d.get<std::string>().find("of cloth on cloth with coefficient 0.3") != std::string::npos;
     };
     CHECK(std::any_of(report["decisions"].begin(), report["decisions"].end(), says_so));
+    CHECK(report["stretch_curves"].size() == 1); // the tee is of jersey
+    CHECK(report["stretch_curves"][0]["fabric"] == "jersey");
+    CHECK(report["stretch_curves"][0]["weft"][0] == nlohmann::json{0.0, 0.0});
+    CHECK(report["stretch_curves"][0]["weft"].back()[0] == 0.5);
     CHECK_THAT(report["blas"].get<std::string>(), Contains("OpenBLAS"));
     CHECK(report["ease"]["bust"]["ease"].get<double>() > 0);
     CHECK(report["seconds"]["total"].get<double>() >= report["seconds"]["sew"].get<double>());

@@ -89,6 +89,31 @@ std::string decision(const nlohmann::json& report, const std::string& words) {
 
 } // namespace
 
+TEST_CASE("a garment drapes in a fabric of one's own, and says what its method makes of the curves") {
+    const TempFolder folder;
+    const std::string tee = TOILE_SOURCE_DIR "/examples/tee.json", own = folder / "own.json";
+    const auto fabric = [&](double last) {
+        write_text(own, R"({"toile_fabric": 1, "name": "interlock", "like": "jersey",
+                            "stretch_warp": [[0, 0], [0.05, 6], [0.1, )" + std::to_string(last) + R"(]]})");
+    };
+    fabric(25);
+    const auto first = drape({tee, "--edge-length", "60mm", "--fabric", own});
+    CHECK(first["status"] == "converged");
+    CHECK(first["fabric"] == "interlock");
+    CHECK(first["stretch_curves"][0]["warp"] == nlohmann::json::parse("[[0.0, 0.0], [0.05, 6.0], [0.1, 25.0]]"));
+    CHECK(decision(first, "stretch of interlock") == "the stretch of interlock follows its measured curves");
+    fabric(20);
+    const auto second = drape({tee, "--edge-length", "60mm", "--fabric", own, "--method", "springs-implicit"});
+    CHECK(second["input_hash"] != first["input_hash"]);
+    CHECK_THAT(decision(second, "stretch curves of interlock"),
+               Contains("were replaced by their secants at 10 % of stretch: 200 N/m along the warp, 32"));
+    write_text(own, R"({"toile_fabric": 1, "name": "interlock", "like": "jersey", "stretch_warp": [[0, 0]]})");
+    const Run r = run_toile({"drape", tee, "--fabric", own, "-o", folder / "a.obj"});
+    CHECK(r.code == 2);
+    CHECK_THAT(r.err, Contains("own.json") && Contains("a stretch curve has 1 points"));
+    CHECK(!std::filesystem::exists(folder / "a.obj"));
+}
+
 TEST_CASE("a staged mesh drapes as it is, with pins from its companion") {
     const TempFolder folder;
     write_text(folder / "stage.obj", staged_skirt());

@@ -136,6 +136,11 @@ bool has_curves(Method m) {
     return m == Method::equilibrium || m == Method::triangles || m == Method::xpbd;
 }
 
+bool has_damping(Method m) {
+    return m == Method::springs_explicit || m == Method::springs_implicit || m == Method::springs_biphasic ||
+           m == Method::springs_limited || m == Method::triangles;
+}
+
 std::unique_ptr<Energy> make_energy(Method method, const Garment& garment, const std::vector<Fabric>& fabrics,
                                     const MethodOptions& options) {
     switch (method) {

@@ -36,6 +36,9 @@ inline bool needs_grain_lattice(Method method) { return method == Method::inexte
 /// Whether stretch follows the measured curves of a fabric; the others go by the numbers that stand for them.
 bool has_curves(Method method);
 
+/// Whether it has internal friction of its own, by MethodOptions::damping_time.
+bool has_damping(Method method);
+
 struct MethodOptions {
     double time_step = 0;         ///< s, of explicit methods that of substeps; 0: that of the StepOptions, of inextensible 0.5 ms, of
                                   ///< explicit ones what is stable

@@ -21,7 +21,7 @@ namespace {
 struct DrapeArguments {
     DrapeJob job;
     bool rate_chosen = false, air_chosen = false;
-    bool sweeps_chosen = false, hessian_chosen = false;
+    bool sweeps_chosen = false, hessian_chosen = false, damping_chosen = false;
     int threads = 0;
     bool quiet = false, json = false;
 };
@@ -35,6 +35,13 @@ void refuse_useless_method(const DrapeArguments& a) {
     if (o.method_options.time_step > 0 && !is_animated(o) && !moves(o))
         throw CommandLineError("--time-step is that of a motion: " + method + " with the contact barrier has no time; name another "
                                "--method or --contact");
+    if (a.damping_chosen && !has_damping(o.method))
+        throw CommandLineError("--damping-time is that of springs and triangles: " + method + " has none");
+    if (a.damping_chosen && !is_animated(o) && !moves(o))
+        throw CommandLineError("--damping-time is that of a motion: " + method + " with the contact barrier comes to rest without any; "
+                               "name another --contact, or --animate");
+    if (!(o.method_options.damping_time >= 0 && o.method_options.damping_time <= 1))
+        throw CommandLineError(text("--damping-time is %.3g s, expected 0 to 1 s", o.method_options.damping_time));
     if (a.sweeps_chosen && o.method != Method::springs_limited)
         throw CommandLineError("--limit and --sweep are about limits on springs, which " + method +
                                " does not have: name --method springs-limited");
@@ -201,6 +208,15 @@ void add_method(CLI::App& command, DrapeArguments& a) {
     add_duration(command, "time-step", drape.method_options.time_step, 1e-7, 0.1,
                  "Step of a motion, of explicit methods that of their substeps (default 2 ms; inextensible and with the barrier 0.5 ms; what "
                  "is stable)");
+    command
+        .add_option_function<std::string>(
+            "--damping-time",
+            [&a](const std::string& time) {
+                a.damping_chosen = true;
+                a.job.drape.method_options.damping_time = parse_duration(time);
+            },
+            "Damping of springs and of triangles as a share of their stiffness (default 20us; 0s: none)")
+        ->type_name("DURATION");
     command
         .add_option_function<std::string>(
             "--limit",

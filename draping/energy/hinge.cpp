@@ -52,18 +52,18 @@ HingeBend make_hinge_bend(const Garment& garment, const std::vector<Fabric>& fab
 
 } // namespace
 
-std::vector<Hinge> hinges_of(const Garment& garment) {
+std::vector<Hinge> hinges_of(const EdgeTable& edges, const std::vector<Triangle>& triangles) {
     std::vector<Hinge> hinges;
-    for (int e = 0; e < garment.edges.size(); ++e) {
-        if (garment.edges.triangles_at(e) != 2) continue;
+    for (int e = 0; e < edges.size(); ++e) {
+        if (edges.triangles_at(e) != 2) continue;
         Hinge hinge;
         hinge.edge = e;
         for (int side = 0; side < 2; ++side) {
-            const int t = garment.edges.incident[garment.edges.first[e] + side];
-            const Triangle nodes = garment.nodes(t);
+            const int t = edges.incident[edges.first[e] + side];
+            const Triangle nodes = triangles[t];
             hinge.triangles[side] = t;
             for (int k = 0; k < 3; ++k) {
-                if (garment.edges.of_triangle[t][k] != e) continue;
+                if (edges.of_triangle[t][k] != e) continue;
                 hinge.nodes[2 + side] = nodes[k];
                 if (side > 0) continue;
                 hinge.nodes[0] = nodes[(k + 1) % 3];

@@ -18,8 +18,9 @@ struct Hinge {
     std::array<int, 4> nodes{};
 };
 
-/// Every edge of the garment with exactly two triangles, in the order of its edges.
-std::vector<Hinge> hinges_of(const Garment& garment);
+/// Every edge with exactly two triangles, in the order of the edges.
+std::vector<Hinge> hinges_of(const EdgeTable& edges, const std::vector<Triangle>& triangles);
+inline std::vector<Hinge> hinges_of(const Garment& garment) { return hinges_of(garment.edges, node_triangles(garment)); }
 
 /// The angle by which the second triangle is turned out of the plane of the first, in (-pi, pi], 0 flat, positive where
 /// their fronts turn away from each other; and its derivatives by the nodes of the hinge. Triangles must have area.

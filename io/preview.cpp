@@ -148,6 +148,7 @@ struct Drawing {
     std::vector<std::array<Line, 3>> line;     ///< per triangle, opposite its corners
     std::vector<std::array<double, 3>> height; ///< m, of the triangle over that edge
     std::vector<int> panel;
+    std::vector<double> heat; ///< per node; empty: panels are told apart
 };
 
 Drawing make_drawing(const Garment& g, const Points& x) {
@@ -233,6 +234,11 @@ Hit describe(const World& world, const Drawing& drawing, const RTCRayHit& h, con
     hit.albedo = body_colour();
     if (!hit.cloth) return hit;
     hit.albedo = panel_colour(drawing.panel[h.hit.primID]);
+    if (!drawing.heat.empty()) {
+        double heat = 0;
+        for (std::size_t k = 0; k < 3; ++k) heat += b[Eigen::Index(k)] * drawing.heat[std::size_t(t[k])];
+        hit.albedo = Vec3(0.75, 0.75 * (1 - heat), 0.75 * (1 - heat));
+    }
     if (wrong_side) hit.albedo = 0.45 * hit.albedo + Vec3(0.22, 0.21, 0.20);
     hit.albedo *= 1 - ink(drawing, h.hit.primID, b, view.pixel);
     return hit;
@@ -375,7 +381,8 @@ void write_preview(const std::string& path, const Garment& garment, const Points
     const Frame frame = frame_of(x, body);
     const std::vector<View> views = make_views(frame, std::clamp(options.height, 16, 8192));
     const World world = make_world(garment, x, body, frame);
-    const Drawing drawing = make_drawing(garment, x);
+    Drawing drawing = make_drawing(garment, x);
+    drawing.heat = options.heat;
     Image image;
     const int gap = options.height / 60;
     for (const View& v : views)

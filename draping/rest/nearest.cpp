@@ -126,30 +126,6 @@ Points mirrored(Points x, const Vec3& normal) {
     return x;
 }
 
-/// Moves points across the surface, by a share of an edge; the same way every time.
-class Shaking {
-public:
-    explicit Shaking(const Prescribed& data)
-        : data_(data), edge_(mean_length(data)) {}
-
-    Points shaken(Points x, double share) {
-        Points normal(x.size(), Vec3::Zero());
-        for (const Triangle& t : data_.triangles) {
-            const Vec3 n = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
-            for (const int i : t) normal[i] += n;
-        }
-        for (std::size_t i = 0; i < x.size(); ++i) x[i] += share * edge_ * (2 * unit() - 1) * normal[i].normalized();
-        return x;
-    }
-
-private:
-    double unit() { return double(random_() >> 11) * 0x1p-53; } // distributions differ between libraries, raw bits do not
-
-    const Prescribed& data_;
-    double edge_;
-    std::mt19937_64 random_{1};
-};
-
 bool alike(const std::vector<double>& a, const std::vector<double>& b, double sign, double tolerance) {
     for (std::size_t e = 0; e < a.size(); ++e)
         if (!(std::abs(std::remainder(a[e] - sign * b[e], 2 * M_PI)) < tolerance)) return false;
@@ -165,6 +141,21 @@ std::vector<double> angles_of(const Prescribed& data, const Points& x) {
     return angles;
 }
 
+Points shaken(const Prescribed& data, Points x, double share, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    const double reach = share * mean_length(data);
+    Points normal(x.size(), Vec3::Zero());
+    for (const Triangle& t : data.triangles) {
+        const Vec3 n = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
+        for (const int i : t) normal[i] += n;
+    }
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        const double unit = double(random() >> 11) * 0x1p-53; // distributions differ between libraries, raw bits do not
+        x[i] += reach * (2 * unit - 1) * normal[i].normalized();
+    }
+    return x;
+}
+
 double gradient_measure(const Prescribed& data, const Eigen::VectorXd& g) {
     const double weight = weight_of(data);
     return g.size() == 0 || weight == 0 ? 0 : g.cwiseAbs().maxCoeff() * mean_length(data) / weight;
@@ -173,7 +164,6 @@ double gradient_measure(const Prescribed& data, const Eigen::VectorXd& g) {
 NearestShape nearest_shape(const Prescribed& data, const Points& start, const NearestOptions& options) {
     NearestShape shape;
     shape.x = start;
-    Shaking shaking(data);
     for (int saddles = 0;; ++saddles) {
         Descent descent(data, shape.x);
         shape.end = NearestEnd::iterations;
@@ -192,12 +182,11 @@ NearestShape nearest_shape(const Prescribed& data, const Points& start, const Ne
         if (descent.at_minimum()) return shape;
         shape.end = NearestEnd::saddle;
         if (saddles == most_saddles) return shape;
-        shape.x = shaking.shaken(shape.x, off_saddle);
+        shape.x = shaken(data, shape.x, off_saddle, saddles);
     }
 }
 
 std::vector<FoundShape> nearest_shapes(const Prescribed& data, const Points& start, const NearestOptions& options) {
-    Shaking shaking(data);
     std::vector<FoundShape> found;
     std::vector<std::vector<double>> angles;
     const auto look_from = [&](const Points& x) {
@@ -213,7 +202,7 @@ std::vector<FoundShape> nearest_shapes(const Prescribed& data, const Points& sta
     };
     const Points mirror = mirrored(start, normal_of(start));
     for (int k = 0; k <= shaken_starts; ++k)
-        for (const Points* from : {&start, &mirror}) look_from(k == 0 ? *from : shaking.shaken(*from, shake));
+        for (const Points* from : {&start, &mirror}) look_from(k == 0 ? *from : shaken(data, *from, shake, k));
     std::vector<int> order(found.size());
     std::iota(order.begin(), order.end(), 0);
     std::stable_sort(order.begin(), order.end(),

@@ -6,6 +6,8 @@
 
 #include "draping/rest/prescribed.h"
 
+#include <cstdint>
+
 namespace toile {
 
 struct NearestOptions {
@@ -39,6 +41,9 @@ struct FoundShape {
 /// The shapes found from `start`, from its mirror image, and from both shaken (seeded) across the surface, each shape once,
 /// lowest energy first.
 std::vector<FoundShape> nearest_shapes(const Prescribed& data, const Points& start, const NearestOptions& options = {});
+
+/// Points moved across the surface by up to a share of the mean edge, the same way for the same seed.
+Points shaken(const Prescribed& data, Points x, double share, std::uint64_t seed);
 
 /// The largest component of the gradient of the energy, as a share of the sum of all weights over the mean length.
 double gradient_measure(const Prescribed& data, const Eigen::VectorXd& gradient);

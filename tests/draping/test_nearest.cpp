@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/rest/consistency.h"
 #include "draping/rest/nearest.h"
+#include "tests/support/shapes.h"
 
 #include <catch2/catch.hpp>
 
@@ -83,4 +84,35 @@ TEST_CASE("prescribed data: what is measured fits, what is changed does not") {
     CHECK(angle_defects(data)[0] == Approx(0).margin(1e-9));
     data.length[0] = 10;
     CHECK_THROWS_WITH(misfit(data), Catch::Matchers::Contains("no triangle has the lengths prescribed for points"));
+}
+
+TEST_CASE("nearest shape: a ball without seams rests as a sphere") {
+    const TriMesh ball = test::sphere(0.036, 3);
+    const Prescribed data = measured(ball.triangles, ball.points);
+    double defects = 0;
+    for (const double d : angle_defects(data)) defects += d;
+    CHECK(defects == Approx(4 * M_PI).epsilon(1e-12));
+    for (const double off : misfit(data)) CHECK(off < 1e-6);
+    const NearestShape found = nearest_shape(data, shaken(data, ball.points, 0.3, 7));
+    CHECK(found.end == NearestEnd::minimum);
+    CHECK(found.energy < 1e-20);
+    Vec3 centre = Vec3::Zero();
+    for (const Vec3& p : found.x) centre += p / double(found.x.size());
+    for (const Vec3& p : found.x) CHECK((p - centre).norm() == Approx(0.036).epsilon(1e-7));
+}
+
+TEST_CASE("nearest shape: flat cloth does not become a ball") {
+    // The lengths of a sphere with no angles at all: lengths alone hold its shape, and what is asked of the angles is frozen in.
+    const TriMesh ball = test::sphere(0.036, 2);
+    Prescribed data = measured(ball.triangles, ball.points);
+    data.angle.assign(data.angle.size(), 0.0);
+    data.length_weight.assign(data.length_weight.size(), 1e4);
+    const NearestShape found = nearest_shape(data, ball.points);
+    CHECK(found.end == NearestEnd::minimum);
+    double squares = 0;
+    for (const Hinge& h : hinges_of(data.edges, data.triangles)) {
+        const double a = measured(ball.triangles, ball.points).angle[h.edge];
+        squares += a * a;
+    }
+    CHECK(found.energy == Approx(squares).epsilon(0.01));
 }

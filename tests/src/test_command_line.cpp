@@ -99,7 +99,7 @@ TEST_CASE("help and version are made, not errors") {
     CHECK(version.err.empty());
     const Run help = run_toile({"--help"});
     CHECK(help.code == 0);
-    for (const char* command : {"drape", "check", "flat", "form", "inspect", "untangle", "compare"})
+    for (const char* command : {"drape", "check", "flat", "form", "inspect", "untangle", "compare", "rest"})
         CHECK_THAT(help.out, Contains(command));
     CHECK_THAT(run_toile({"drape", "--help"}).out, Contains("--edge-length") && Contains("poplin denim"));
 }

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "src/command_line.h"
+
+#include "geometry/parallel.h"
+#include "geometry/text.h"
+#include "io/write_garment.h"
+#include "src/options.h"
+#include "src/rest_job.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <memory>
+#include <ostream>
+
+namespace toile {
+namespace {
+
+struct RestArguments {
+    RestJob job;
+    std::string fabric;
+    int threads = 0;
+    bool quiet = false, json = false, keep_energy = false;
+};
+
+void refuse_useless(const RestArguments& a) {
+    const RestJob& job = a.job;
+    if (job.output.empty() && job.rest.empty() && job.report.empty() && job.preview.empty() && !a.json)
+        throw CommandLineError("there is nothing to write: name a file with -o, --rest, --preview or --report");
+    if (a.keep_energy && job.relax) throw CommandLineError("--keep-energy and --relax exclude each other");
+    if (!a.fabric.empty() && job.length_weight > 0)
+        throw CommandLineError("--fabric and --length-weight exclude each other");
+    if (job.output.empty()) return;
+    try {
+        garment_format(job.output);
+    } catch (const std::exception& error) {
+        throw CommandLineError(error.what());
+    }
+}
+
+void summarise(std::ostream& out, const RestOutcome& outcome) {
+    const auto r = nlohmann::json::parse(outcome.report);
+    const auto& d = r["data"];
+    out << "data: " << d["lengths"] << " lengths and " << d["angles"] << " angles, ";
+    if (!d["rank"].is_null()) out << d["rank"] << " of them independent, ";
+    out << "on " << d["freedom"] << " degrees of freedom\n";
+    if (r["misfit"]["at"].is_null())
+        out << "misfit: none\n";
+    else
+        out << text("misfit: up to %.3g degrees round point ", r["misfit"]["max"].get<double>()) << r["misfit"]["at"] << ", at "
+            << r["misfit"]["points"].size() << " of " << d["inner_points"] << " inner points\n";
+    for (std::size_t k = 0; k < r["states"].size(); ++k) {
+        const auto& s = r["states"][k];
+        out << "state " << k + 1 << text(": energy %.10g J, lengths off by up to %.2g %%, angles by %.3g degrees",
+                                         s["energy"].get<double>(), 100 * s["length_off_max"].get<double>(),
+                                         s["angle_off_max"].get<double>());
+        if (!s["mirror_of"].is_null()) out << ", the mirror of state " << s["mirror_of"];
+        out << '\n';
+    }
+    for (std::size_t k = 0; k < outcome.written.size(); ++k)
+        out << (k == 0 ? "written: " : ", ") << outcome.written[k] << (k + 1 == outcome.written.size() ? "\n" : "");
+}
+
+int rest_command(const RestArguments& arguments, const Console& console) {
+    refuse_useless(arguments);
+    set_threads(arguments.threads);
+    RestJob job = arguments.job;
+    if (!arguments.fabric.empty()) job.fabric = arguments.fabric;
+    const RestOutcome outcome = run_rest(job);
+    if (arguments.json)
+        console.out << outcome.report << std::flush;
+    else if (!arguments.quiet)
+        summarise(console.out, outcome);
+    console.out << std::flush;
+    if (!outcome.states.empty()) return exit_made;
+    console.err << "toile: stalled: no start reached a minimum" << std::endl;
+    return exit_not_converged;
+}
+
+} // namespace
+
+void add_rest(CLI::App& app, Command& chosen) {
+    CLI::App& command = *app.add_subcommand("rest", "Find the nearest shapes to lengths and angles that need not fit together");
+    const auto a = std::make_shared<RestArguments>();
+    RestJob& job = a->job;
+    const auto file = [&command](const char* name, std::string& path, const char* help) {
+        return command.add_option(name, path, help)->type_name("FILE");
+    };
+    file("shape", job.shape, "Mesh, .obj or .glb: its lengths and angles, and the shape to start from")->required();
+    file("--lengths-of", job.lengths_of, "Mesh of the same triangles whose lengths are wanted instead");
+    file("--angles-of", job.angles_of, "Mesh of the same triangles whose angles are wanted instead");
+    file("--data", job.data, "JSON file that changes some lengths and angles, as in docs/rest.md");
+    add_fabric(command, a->fabric, "Fabric that weighs lengths against angles (default: poplin)");
+    command.add_option("--length-weight", job.length_weight, "Weight of every length, where every angle has 1 (default: by the fabric)")
+        ->check(CLI::Range(1e-9, 1e12).description(""))
+        ->type_name("NUMBER");
+    command.add_flag("--keep-energy", a->keep_energy, "The rest shape stays what was asked for, and its energy frozen in (default)");
+    command.add_flag("--relax", job.relax, "The rest shape is what the nearest shape measures: no energy is left");
+    file("-o,--output", job.output, "Mesh to write of the lowest state; others are written beside it as name-2, name-3 ...");
+    file("--rest", job.rest, "Rest shape to write, JSON as --data");
+    file("--preview", job.preview, "PNG to write: how little what was asked for fits, from white to red");
+    file("--report", job.report, "Report to write, JSON as in docs/rest.md");
+    command.add_option("--threads", a->threads, "Threads to use (default 0: all); the result does not depend on it")
+        ->check(CLI::Range(0, 1024).description(""))
+        ->type_name("COUNT");
+    command.add_flag("--quiet", a->quiet, "Print errors only");
+    command.add_flag("--json", a->json, "Print the report instead of a summary");
+    command.callback([a, &chosen] { chosen = [a](const Console& console) { return rest_command(*a, console); }; });
+}
+
+} // namespace toile

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// From files to files: read a mesh and what its lengths and angles are to be, find the nearest shapes, write them.
+
+#include "draping/rest/nearest.h"
+
+#include <string>
+#include <vector>
+
+namespace toile {
+
+struct RestJob {
+    std::string shape;      ///< file: the mesh, and where its points are to begin with
+    std::string lengths_of; ///< file with the same triangles, whose lengths are prescribed; empty: those of `shape`
+    std::string angles_of;  ///< the same for angles
+    std::string data;       ///< file that changes some of them; empty: none
+    std::string fabric = "poplin"; ///< whose stiffnesses weigh lengths against angles,
+    double length_weight = 0; ///< J; more than 0: lengths have this weight instead, and angles 1
+    bool relax = false;     ///< the rest shape is what the nearest shape measures; else what was prescribed
+
+    std::string output;     ///< file of the lowest state; the k-th is written as name-k; empty: not written
+    std::string rest;       ///< file of the rest shape, JSON; empty: not written
+    std::string preview;    ///< PNG file of the misfit; empty: not written
+    std::string report;     ///< file; empty: not written
+};
+
+struct RestOutcome {
+    std::vector<FoundShape> states;
+    std::string report;               ///< JSON text, described in docs/rest.md
+    std::vector<std::string> written; ///< files
+};
+
+/// Does the job. Throws InputError (a sentence) when a file is refused or a target cannot be written, before anything is. No
+/// states: from no start was a minimum reached.
+RestOutcome run_rest(const RestJob& job);
+
+} // namespace toile

@@ -6,10 +6,12 @@
 #include "io/write_garment.h"
 #include "src/options.h"
 #include "src/rest_job.h"
+#include "src/sag_free_job.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <cmath>
 #include <memory>
 #include <ostream>
 
@@ -18,7 +20,9 @@ namespace {
 
 struct RestArguments {
     RestJob job;
-    std::string fabric;
+    std::string fabric, hold;
+    double length_change = 5, angle_change = 90; // %, degrees
+    bool sag_free = false;
     int threads = 0;
     bool quiet = false, json = false, keep_energy = false;
 };
@@ -36,6 +40,11 @@ void refuse_useless(const RestArguments& a) {
     } catch (const std::exception& error) {
         throw CommandLineError(error.what());
     }
+}
+
+void list_written(std::ostream& out, const std::vector<std::string>& written) {
+    for (std::size_t k = 0; k < written.size(); ++k)
+        out << (k == 0 ? "written: " : ", ") << written[k] << (k + 1 == written.size() ? "\n" : "");
 }
 
 void summarise(std::ostream& out, const RestOutcome& outcome) {
@@ -57,13 +66,61 @@ void summarise(std::ostream& out, const RestOutcome& outcome) {
         if (!s["mirror_of"].is_null()) out << ", the mirror of state " << s["mirror_of"];
         out << '\n';
     }
-    for (std::size_t k = 0; k < outcome.written.size(); ++k)
-        out << (k == 0 ? "written: " : ", ") << outcome.written[k] << (k + 1 == outcome.written.size() ? "\n" : "");
+    list_written(out, outcome.written);
+}
+
+void refuse_with_sag_free(const RestArguments& a) {
+    const RestJob& job = a.job;
+    if (a.hold.empty())
+        throw CommandLineError("--sag-free needs --hold: numbers of points such as 1,2,3, \"borders\", or a file of numbers");
+    if (!job.output.empty()) throw CommandLineError("--sag-free moves nothing: it writes a rest shape with --rest, and no mesh with -o");
+    if (!job.lengths_of.empty() || !job.angles_of.empty() || !job.data.empty() || job.length_weight > 0 || job.relax || a.keep_energy)
+        throw CommandLineError("--sag-free finds lengths and angles itself: --lengths-of, --angles-of, --data, --length-weight, "
+                               "--keep-energy and --relax do not go with it");
+}
+
+void summarise(std::ostream& out, const SagFreeOutcome& outcome) {
+    const auto r = nlohmann::json::parse(outcome.report);
+    out << text("weight: %.4g N\n", r["weight"].get<double>());
+    out << text("residual force: up to %.3g N", r["residual"]["max"].get<double>());
+    if (!r["residual"]["points"].empty())
+        out << ", at point " << r["residual"]["at"] << "; " << r["residual"]["points"].size() << " points lack some";
+    if (r["stable"] == false) out << "\nnot stable: the least push takes the cloth elsewhere";
+    out << text("\nlengths changed by up to %.3g %%, angles by %.3g degrees; ", 100 * std::abs(r["length_change"]["max"].get<double>()),
+                std::abs(r["angle_change"]["max"].get<double>()));
+    out << r["bounds"]["lengths"].size() << " lengths and " << r["bounds"]["angles"].size() << " angles at their bounds\n";
+    list_written(out, outcome.written);
+}
+
+int sag_free_command(const RestArguments& arguments, const Console& console) {
+    refuse_with_sag_free(arguments);
+    SagFreeJob job;
+    job.shape = arguments.job.shape;
+    job.hold = arguments.hold;
+    if (!arguments.fabric.empty()) job.fabric = arguments.fabric;
+    job.options.length_change = arguments.length_change / 100;
+    job.options.angle_change = arguments.angle_change * M_PI / 180;
+    job.rest = arguments.job.rest;
+    job.preview = arguments.job.preview;
+    job.report = arguments.job.report;
+    const SagFreeOutcome outcome = run_sag_free(job);
+    if (arguments.json)
+        console.out << outcome.report << std::flush;
+    else if (!arguments.quiet)
+        summarise(console.out, outcome);
+    console.out << std::flush;
+    if (outcome.found.end == BalanceEnd::balanced) return exit_made;
+    const auto residual = nlohmann::json::parse(outcome.report)["residual"];
+    console.err << text("toile: no rest shape within the bounds holds the cloth: point %d lacks %.3g N", residual["at"].get<int>(),
+                        residual["max"].get<double>())
+                << std::endl;
+    return exit_not_converged;
 }
 
 int rest_command(const RestArguments& arguments, const Console& console) {
     refuse_useless(arguments);
     set_threads(arguments.threads);
+    if (arguments.sag_free) return sag_free_command(arguments, console);
     RestJob job = arguments.job;
     if (!arguments.fabric.empty()) job.fabric = arguments.fabric;
     const RestOutcome outcome = run_rest(job);
@@ -96,6 +153,18 @@ void add_rest(CLI::App& app, Command& chosen) {
         ->type_name("NUMBER");
     command.add_flag("--keep-energy", a->keep_energy, "The rest shape stays what was asked for, and its energy frozen in (default)");
     command.add_flag("--relax", job.relax, "The rest shape is what the nearest shape measures: no energy is left");
+    CLI::Option* sag_free = command.add_flag("--sag-free", a->sag_free, "Find the rest shape with which cloth of this fabric hangs as the mesh lies, gravity along -y");
+    command.add_option("--hold", a->hold, "With --sag-free, what is held: points by number, 1,2,3, or \"borders\", or a file of numbers")
+        ->needs(sag_free)
+        ->type_name("POINTS");
+    command.add_option("--length-change", a->length_change, "With --sag-free, most that a length may change (default 5 %)")
+        ->check(CLI::Range(0.0, 50.0).description(""))
+        ->needs(sag_free)
+        ->type_name("PERCENT");
+    command.add_option("--angle-change", a->angle_change, "With --sag-free, most that an angle may change (default 90 degrees)")
+        ->check(CLI::Range(0.0, 180.0).description(""))
+        ->needs(sag_free)
+        ->type_name("DEGREES");
     file("-o,--output", job.output, "Mesh to write of the lowest state; others are written beside it as name-2, name-3 ...");
     file("--rest", job.rest, "Rest shape to write, JSON as --data");
     file("--preview", job.preview, "PNG to write: how little what was asked for fits, from white to red");

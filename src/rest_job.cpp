@@ -5,7 +5,6 @@
 #include "geometry/text.h"
 #include "io/prescribed_json.h"
 #include "io/preview.h"
-#include "io/read_garment.h"
 #include "io/write_file.h"
 #include "io/write_garment.h"
 #include "src/pipeline.h"
@@ -33,14 +32,6 @@ std::string numbered(const std::string& path, int k) {
     return (p.parent_path() / p.stem()).string() + text("-%d", k + 1) + p.extension().string();
 }
 
-Prescribed measured_in(const std::string& path, const ReadGarment& read) {
-    try {
-        return measured(node_triangles(read.garment), read.x);
-    } catch (const std::invalid_argument& error) {
-        throw InputError(path + ": " + error.what());
-    }
-}
-
 Prescribed measured_like(const std::string& path, const Prescribed& data) {
     const ReadGarment read = read_garment(path);
     Prescribed other = measured_in(path, read);
@@ -53,9 +44,7 @@ Prescribed read_data(const RestJob& job, const ReadGarment& read) {
     if (!job.lengths_of.empty()) data.length = measured_like(job.lengths_of, data).length;
     if (!job.angles_of.empty()) data.angle = measured_like(job.angles_of, data).angle;
     if (!job.data.empty()) {
-        std::vector<int> point_of_file(1 + *std::max_element(read.file_node.begin(), read.file_node.end()), -1);
-        for (std::size_t i = 0; i < read.file_node.size(); ++i) point_of_file[read.file_node[i]] = int(i);
-        read_prescribed(job.data, point_of_file, data);
+        read_prescribed(job.data, points_of_file(read), data);
     }
     if (const int t = impossible_triangle(data); t >= 0) {
         const Triangle& k = data.triangles[t];
@@ -130,6 +119,20 @@ std::vector<std::string> targets(const RestJob& job) {
 }
 
 } // namespace
+
+Prescribed measured_in(const std::string& path, const ReadGarment& read) {
+    try {
+        return measured(node_triangles(read.garment), read.x);
+    } catch (const std::invalid_argument& error) {
+        throw InputError(path + ": " + error.what());
+    }
+}
+
+std::vector<int> points_of_file(const ReadGarment& read) {
+    std::vector<int> points(1 + *std::max_element(read.file_node.begin(), read.file_node.end()), -1);
+    for (std::size_t i = 0; i < read.file_node.size(); ++i) points[read.file_node[i]] = int(i);
+    return points;
+}
 
 RestOutcome run_rest(const RestJob& job) {
     refuse_targets({job.shape, job.lengths_of, job.angles_of, job.data}, targets(job));

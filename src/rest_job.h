@@ -5,6 +5,8 @@
 
 #include "draping/rest/nearest.h"
 
+#include "io/read_garment.h"
+
 #include <string>
 #include <vector>
 
@@ -30,6 +32,12 @@ struct RestOutcome {
     std::string report;               ///< JSON text, described in docs/rest.md
     std::vector<std::string> written; ///< files
 };
+
+/// What a mesh that was read measures, all weights 1. Throws InputError.
+Prescribed measured_in(const std::string& path, const ReadGarment& read);
+
+/// The point at each number of the file, from 0; -1: none.
+std::vector<int> points_of_file(const ReadGarment& read);
 
 /// Does the job. Throws InputError (a sentence) when a file is refused or a target cannot be written, before anything is. No
 /// states: from no start was a minimum reached.

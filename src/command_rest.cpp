@@ -111,8 +111,9 @@ int sag_free_command(const RestArguments& arguments, const Console& console) {
     console.out << std::flush;
     if (outcome.found.end == BalanceEnd::balanced) return exit_made;
     const auto residual = nlohmann::json::parse(outcome.report)["residual"];
-    console.err << text("toile: no rest shape within the bounds holds the cloth: point %d lacks %.3g N", residual["at"].get<int>(),
-                        residual["max"].get<double>())
+    const char* what = outcome.found.end == BalanceEnd::nearest ? "no rest shape within the bounds holds the cloth"
+                                                               : "stalled before the nearest rest shape was found";
+    console.err << text("toile: %s: point %d lacks %.3g N", what, residual["at"].get<int>(), residual["max"].get<double>())
                 << std::endl;
     return exit_not_converged;
 }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace toile {
 
@@ -20,7 +21,7 @@ constexpr int most_refinements = 30;
 constexpr double refined = 1e-12; // change of what is missing, as a share of it, from which on it stays
 constexpr double first_spring = 1, last_spring = 1e-8; // of the same softness
 constexpr int most_steps = 60;    // of Newton, for a strength of springs
-constexpr double relaxed = 1e-9;  // of what is missing
+constexpr double relaxed = 1e-7;  // of what is missing
 constexpr double slack = 1e-10;   // of a bound
 constexpr double nearest = 1e-6;  // what the sum of squares may be above the least, as a share
 
@@ -45,12 +46,18 @@ public:
     Balance run() {
         if (solve() && all_right() && (balanced() || is_nearest())) return result();
         VectorXd u = VectorXd::Zero(load_.size());
-        double spring = first_spring * softness_;
-        for (; spring >= last_spring * softness_; spring /= 10) {
-            relax(spring, u);
-            if (solve() && all_right() && (balanced() || is_nearest())) return result();
+        std::vector<double> best;
+        double least = std::numeric_limits<double>::infinity();
+        bool reached = true;
+        for (double spring = first_spring * softness_; reached && spring >= last_spring * softness_; spring /= 10) {
+            reached = relax(spring, u);
+            if (missing_.norm() < least) {
+                least = missing_.norm();
+                best = force_;
+            }
+            if (reached && solve() && all_right() && (balanced() || is_nearest())) return result();
         }
-        imbalance(u, spring);
+        force_ = best;
         return result();
     }
 
@@ -150,15 +157,17 @@ private:
     }
 
     /// Least sum of force^2 / (2 stiffness) + missing^2 / (2 spring) within the bounds, by its dual: the sum over members of
-    /// the energy that they take up within their bounds, which is convex and in pieces quadratic, by Newton steps.
-    void relax(double spring, VectorXd& u) {
+    /// the energy that they take up within their bounds, which is convex and in pieces quadratic, by Newton steps. False when
+    /// they do not get there.
+    bool relax(double spring, VectorXd& u) {
         VectorXd d, out = imbalance(u, spring);
         for (int k = 0; k < most_steps && out.norm() > relaxed * missing_.norm(); ++k) {
-            if (!factorise(spring)) return;
+            if (!factorise(spring)) return false;
             factor_.solve(out, d);
             u += step_along(u, d, out.dot(d), spring) * d;
             out = imbalance(u, spring);
         }
+        return out.norm() <= relaxed * missing_.norm();
     }
 
     /// Where along d the slope, -`slope` at 0, has fallen to a share of that: 1 unless bounds are in the way.

@@ -144,7 +144,7 @@ SagFree sag_free(const std::vector<Triangle>& triangles, const Points& x, const 
         SagFree found = sag_free(data, x, load, held, options);
         found.factorisations = factorisations += found.factorisations;
         Prescribed next = found.rest;
-        if (impossible_triangle(next) >= 0) return found;
+        if (found.end != BalanceEnd::balanced || impossible_triangle(next) >= 0) return found;
         weigh(next, fabric);
         if (weights_apart(data, next) <= same_weights || round == most_rounds) return found;
         data = std::move(next);

@@ -34,6 +34,7 @@ void refuse_useless(const RestArguments& a) {
     if (a.keep_energy && job.relax) throw CommandLineError("--keep-energy and --relax exclude each other");
     if (!a.fabric.empty() && job.length_weight > 0)
         throw CommandLineError("--fabric and --length-weight exclude each other");
+    if (job.all_states && job.output.empty()) throw CommandLineError("--all-states writes meshes beside that of -o, which is not named");
     if (job.output.empty()) return;
     try {
         garment_format(job.output);
@@ -166,7 +167,8 @@ void add_rest(CLI::App& app, Command& chosen) {
         ->check(CLI::Range(0.0, 180.0).description(""))
         ->needs(sag_free)
         ->type_name("DEGREES");
-    file("-o,--output", job.output, "Mesh to write of the lowest state; others are written beside it as name-2, name-3 ...");
+    file("-o,--output", job.output, "Mesh to write of the lowest state");
+    command.add_flag("--all-states", job.all_states, "Write the other states beside it as name-2, name-3 ...");
     file("--rest", job.rest, "Rest shape to write, JSON as --data");
     file("--preview", job.preview, "PNG to write: how little what was asked for fits, from white to red");
     file("--report", job.report, "Report to write, JSON as in docs/rest.md");

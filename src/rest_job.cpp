@@ -159,7 +159,8 @@ RestOutcome run_rest(const RestJob& job) {
     report["states"] = states_json(data, outcome.states);
     report["second_opinion"] = outcome.states.empty() ? Json() : second_opinion(data, outcome.states[0]);
 
-    for (std::size_t k = 0; k < outcome.states.size() && !job.output.empty(); ++k) {
+    const std::size_t wanted = job.output.empty() ? 0 : job.all_states ? outcome.states.size() : 1;
+    for (std::size_t k = 0; k < std::min(wanted, outcome.states.size()); ++k) {
         write_moved(numbered(job.output, int(k)), job.shape, read, outcome.states[k].shape.x);
         if (k > 0) outcome.written.push_back(numbered(job.output, int(k)));
     }

@@ -21,7 +21,8 @@ struct RestJob {
     double length_weight = 0; ///< J; more than 0: lengths have this weight instead, and angles 1
     bool relax = false;     ///< the rest shape is what the nearest shape measures; else what was prescribed
 
-    std::string output;     ///< file of the lowest state; the k-th is written as name-k; empty: not written
+    std::string output;     ///< file of the lowest state; empty: not written
+    bool all_states = false; ///< the k-th is written beside it as name-k
     std::string rest;       ///< file of the rest shape, JSON; empty: not written
     std::string preview;    ///< PNG file of the misfit; empty: not written
     std::string report;     ///< file; empty: not written

@@ -53,13 +53,14 @@ TEST_CASE("rest: what is asked of four triangles, how far it is from fitting, an
     CHECK(r["states"][0]["energy"].get<double>() == Approx(0.00274135244).epsilon(1e-6));
     CHECK(r["second_opinion"]["difference"].get<double>() < 1e-6);
     CHECK(std::filesystem::exists(out));
+    CHECK_FALSE(std::filesystem::exists(folder / "out-2.obj"));
 
     r = report_of({"rest", shape, "--data", data, "--length-weight", "1000", "--json"});
     CHECK(r["states"][0]["energy"].get<double>() == Approx(0.4253912878).epsilon(1e-6));
     CHECK(r["second_opinion"]["difference"].get<double>() < 1e-6);
 
     write_file(data, square(1.05, 0));
-    r = report_of({"rest", shape, "--data", data, "--length-weight", "1000", "-o", out, "--json"});
+    r = report_of({"rest", shape, "--data", data, "--length-weight", "1000", "-o", out, "--all-states", "--json"});
     REQUIRE(r["states"].size() >= 2);
     CHECK(r["states"][0]["energy"].get<double>() == Approx(1.3160316331).epsilon(1e-6));
     CHECK(r["states"][0]["mirror_of"] == 2);
@@ -124,6 +125,7 @@ TEST_CASE("rest: data that cannot be used are refused in a sentence") {
         CHECK_FALSE(std::filesystem::exists(folder / "out.obj"));
     }
     CHECK(run_toile({"rest", shape}).code == 1);
+    CHECK(run_toile({"rest", shape, "--json", "--all-states"}).code == 1);
     CHECK(run_toile({"rest", shape, "-o", folder / "a.stl"}).code == 1);
     CHECK(run_toile({"rest", shape, "--json", "--relax", "--keep-energy"}).code == 1);
     CHECK(run_toile({"rest", shape, "--json", "--fabric", "poplin", "--length-weight", "1"}).code == 1);

@@ -11,7 +11,7 @@ namespace toile {
 
 struct PreviewOptions {
     int height = 900; ///< pixels, 16 .. 8192; the width follows from the garment
-    std::vector<double> heat; ///< per node, in [0, 1]: painted on the cloth from white to red, instead of shades of panels
+    std::vector<double> heat{}; ///< per node, in [0, 1]: painted on the cloth from white to red, instead of shades of panels
 };
 
 /// A PNG picture of front, back and side (the wearer's left) beside each other, without perspective and all

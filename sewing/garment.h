@@ -8,11 +8,17 @@
 
 namespace toile {
 
-/// What the cloth wants to be: per triangle its two edge vectors flat, per edge the angle it wants to be bent
-/// by. Not a rest position per vertex: a moulded cup or an eased seam has none.
+/// What the cloth wants to be: per triangle its two edge vectors along the cloth, per edge the angle it wants to be
+/// bent by, per triangle how it wants to be curved. Not a rest position per vertex: a moulded cup or an eased seam
+/// has none.
 struct RestShape {
     std::vector<Mat2> edges; ///< columns: corner 1 - corner 0, corner 2 - corner 0; rows: weft, warp; metres
     std::vector<double> angles; ///< rad, one per entry of Garment::edges; 0 is flat
+    /// Empty for flat cloth, otherwise one per triangle, 1/m. Rows: second derivatives (uu, vv, uv) of the surface over
+    /// (weft, warp); columns: their components along the triangle's weft, warp and normal. The last column is the second
+    /// fundamental form, positive where the cloth curves toward its right side. The others are Christoffel symbols, 0 for
+    /// who knows the curvature alone; moulded() in draping/rest has them, with which rest is exactly at rest.
+    std::vector<Mat3> curvature;
 };
 
 /// Area of a triangle with these rest edges, m2.

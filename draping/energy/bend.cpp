@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/energy/bend.h"
 
+#include "draping/energy/grain.h"
 #include "geometry/parallel.h"
 
 #include <Eigen/Dense>
@@ -11,8 +12,6 @@
 namespace toile {
 
 namespace {
-
-using Rows = Eigen::Matrix<double, 3, Eigen::Dynamic>;
 
 // A linear functional of node positions.
 struct Stencil {
@@ -191,13 +190,11 @@ Eigen::Matrix<double, 3, 6> morley(const Mat2& edges) {
     return b;
 }
 
-// The three second derivatives of triangle t as rows over `nodes`, which receives the nodes used.
-Rows exact_rows(const Garment& garment, int t, const std::vector<EdgeSlope>& slopes, const Patch& patch,
-                std::vector<int>& nodes) {
+BendRows exact_rows(const Garment& garment, int t, const std::vector<EdgeSlope>& slopes, const Patch& patch) {
     const Eigen::Matrix<double, 3, 6> b = morley(garment.rest.edges[t]);
     const Triangle corners = garment.nodes(t);
-    nodes.assign(corners.begin(), corners.end());
-    Rows rows = b.leftCols<3>();
+    BendRows result{{corners.begin(), corners.end()}, b.leftCols<3>()};
+    auto& [nodes, rows] = result;
     for (int k = 0; k < 3; ++k) {
         const int e = garment.edges.of_triangle[t][k];
         const bool inner = neighbour(garment, t, k) >= 0;
@@ -214,7 +211,18 @@ Rows exact_rows(const Garment& garment, int t, const std::vector<EdgeSlope>& slo
             rows.col(at) += sign * slope.weights[i] * b.col(3 + k);
         }
     }
-    return rows;
+    if (!garment.rest.curvature.empty())
+        rows.leftCols<3>() -= garment.rest.curvature[t].leftCols<2>() * grain_shape(garment.rest.edges[t]).transpose();
+    return result;
+}
+
+std::vector<BendRows> bend_rows(const Garment& garment, const std::vector<EdgeSlope>& slopes) {
+    const std::vector<Patch> patches = make_patches(garment);
+    std::vector<BendRows> all(garment.triangles.size());
+    parallel_for(int(all.size()), 256, [&](int begin, int end) {
+        for (int t = begin; t < end; ++t) all[t] = exact_rows(garment, t, slopes, patches[t]);
+    });
+    return all;
 }
 
 BendElement compact_element(const Garment& garment, int t, const std::vector<EdgeSlope>& slopes,
@@ -254,22 +262,23 @@ BendElement compact_element(const Garment& garment, int t, const std::vector<Edg
 
 Eigen::SparseMatrix<double> assemble(const Garment& garment, const std::vector<EdgeSlope>& slopes,
                                      const std::vector<Mat3>& moduli) {
-    const std::vector<Patch> patches = make_patches(garment);
+    const std::vector<BendRows> all = bend_rows(garment, slopes);
     const int n = int(garment.triangles.size());
-    std::vector<std::vector<int>> nodes(n);
     std::vector<Eigen::MatrixXd> blocks(n);
     parallel_for(n, 256, [&](int begin, int end) {
         for (int t = begin; t < end; ++t) {
-            const Rows rows = exact_rows(garment, t, slopes, patches[t], nodes[t]);
+            const auto& rows = all[t].rows;
             blocks[t] = rest_area(garment.rest.edges[t]) * rows.transpose() *
                         moduli[garment.panel_of_triangle[t]] * rows;
         }
     });
     std::vector<Eigen::Triplet<double>> entries;
-    for (int t = 0; t < n; ++t)
-        for (std::size_t i = 0; i < nodes[t].size(); ++i)
-            for (std::size_t j = 0; j < nodes[t].size(); ++j)
-                entries.emplace_back(nodes[t][i], nodes[t][j], blocks[t](i, j));
+    for (int t = 0; t < n; ++t) {
+        const std::vector<int>& nodes = all[t].nodes;
+        for (std::size_t i = 0; i < nodes.size(); ++i)
+            for (std::size_t j = 0; j < nodes.size(); ++j)
+                entries.emplace_back(nodes[i], nodes[j], blocks[t](i, j));
+    }
     Eigen::SparseMatrix<double> stiffness(garment.node_count, garment.node_count);
     stiffness.setFromTriplets(entries.begin(), entries.end());
     return stiffness;
@@ -285,6 +294,8 @@ Vec3 force_at(const Eigen::SparseMatrix<double>& stiffness, const Points& x, int
 }
 
 } // namespace
+
+std::vector<BendRows> bend_rows(const Garment& garment) { return bend_rows(garment, inner_slopes(garment)); }
 
 Mat3 bend_moduli(const Fabric& fabric) {
     Mat3 d = Mat3::Zero();

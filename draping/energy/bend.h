@@ -30,13 +30,22 @@ struct BendElement {
 /// Second derivatives are those of Morley's triangle (quadratic; values at corners, slopes across mid-edges).
 /// The slope is one vector per edge, seen by both triangles: linear in the nodes around the edge and exact on
 /// quadratics. One value per edge makes the element consistent, exactness makes it convergent, on any mesh;
-/// see docs/bending.md.
+/// see docs/bending.md. Cloth that is curved at rest has RestCurvature besides.
 struct Bending {
     Eigen::SparseMatrix<double> stiffness; ///< K: nodes x nodes, both halves, N/m
     /// The same with slopes from the two triangles at the edge alone: up to 15 % stiffer on rough meshes,
     /// with half the entries. Meant for what is factored; the energy is `stiffness`.
     std::vector<BendElement> compact;
 };
+
+/// The three second derivatives (X_uu, X_vv, X_uv) of one triangle: rows times the places of the nodes, the triangle's
+/// corners first. Rows sum to zero. Where the rest shape is curved, they are covariant: less its Christoffel symbols times
+/// the triangle's own first derivatives.
+struct BendRows {
+    std::vector<int> nodes;
+    Eigen::Matrix<double, 3, Eigen::Dynamic> rows; ///< 1/m2
+};
+std::vector<BendRows> bend_rows(const Garment& garment);
 
 /// Moduli of the energy per area over the second derivatives (uu, vv, uv). Throws std::invalid_argument for a fabric
 /// whose bending is not positive definite.

@@ -23,9 +23,11 @@ public:
 
     /// Called when a matrix has a new pattern, before add_hessian fills it: the place to look up where blocks lie.
     virtual void find_blocks(const BlockMatrix& h) { (void)h; }
-    /// Adds to `product` what add_hessian leaves out of the exact second derivative's product with v, for the sake of a
-    /// cheap factor. Nothing unless a model does.
-    virtual void add_left_out(const Eigen::VectorXd& v, Eigen::VectorXd& product) const { (void)v, (void)product; }
+    /// Adds to `product` what add_hessian leaves out of the exact second derivative's product with v at x, for the sake of
+    /// a cheap factor. Nothing unless a model does.
+    virtual void add_left_out(const Points& x, const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
+        (void)x, (void)v, (void)product;
+    }
 
     /// Called at rest. A model with constraints takes up as forces what their stiffness held by being violated, and returns
     /// whether that was more than it promises: then rest is elsewhere.

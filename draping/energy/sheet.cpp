@@ -81,6 +81,7 @@ Sheet make_sheet(const Garment& garment, const std::vector<Fabric>& fabrics) {
     sheet.stretch = make_stretch(garment, fabrics);
     sheet.bending = make_bending(garment, fabrics);
     sheet.creases = make_creases(garment, fabrics);
+    sheet.curved = make_rest_curvature(garment, fabrics);
     sheet.limits = make_strain_limits(garment, fabrics);
     // One list of nodes per element: the patch's, and the compact bending's after them.
     for (std::size_t t = 0; t < sheet.stretch.size(); ++t) {
@@ -105,6 +106,7 @@ Sheet make_sheet(const Garment& garment, const std::vector<Fabric>& fabrics) {
 
 double sheet_value(const Sheet& sheet, const Points& x) {
     double sum = sheet.softness * stretch_value(sheet.stretch, x) + bend_value(sheet.bending, x) + value(sheet.creases, x);
+    if (!sheet.curved.empty()) sum += value(sheet.curved, x);
     if (!sheet.limits.empty()) sum += strain_limit_value(sheet.limits, x);
     return sum;
 }
@@ -118,9 +120,10 @@ void sheet_gradient(const Sheet& sheet, const Points& x, Points& gradient) {
         flat(gradient) += sheet.softness * flat(soft);
     }
     bend_gradient(sheet.bending, x, gradient);
-    if (!sheet.creases.empty()) {
+    if (!sheet.creases.empty() || !sheet.curved.empty()) {
         Eigen::VectorXd bent = Eigen::VectorXd::Zero(3 * Eigen::Index(x.size()));
         add_gradient(sheet.creases, x, bent);
+        add_gradient(sheet.curved, x, bent);
         flat(gradient) += bent;
     }
     if (!sheet.limits.empty()) strain_limit_gradient(sheet.limits, x, gradient);
@@ -173,13 +176,14 @@ void sheet_hessian(const Sheet& sheet, const Points& x, HessianKind kind, BlockM
     add_hessian(sheet.creases, x, kind, matrix);
 }
 
-void sheet_beyond_compact(const Sheet& sheet, const Eigen::VectorXd& v, Eigen::VectorXd& y) {
+void sheet_beyond_compact(const Sheet& sheet, const Points& x, const Eigen::VectorXd& v, Eigen::VectorXd& y) {
     const auto& k = sheet.beyond_compact;
     parallel_for(int(k.outerSize()), 512, [&](int begin, int end) {
         for (int i = begin; i < end; ++i)
             for (Eigen::SparseMatrix<double>::InnerIterator entry(k, i); entry; ++entry)
                 y.segment<3>(3 * i) += entry.value() * v.segment<3>(3 * entry.index());
     });
+    add_product(sheet.curved, x, v, y);
 }
 
 void SheetEnergy::add_gradient(const Points& x, Eigen::VectorXd& g) const {

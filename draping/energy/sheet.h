@@ -7,6 +7,7 @@
 #include "draping/energy/bend.h"
 #include "draping/energy/energy.h"
 #include "draping/energy/hinge.h"
+#include "draping/energy/rest_curvature.h"
 #include "draping/energy/strain_limit.h"
 #include "draping/energy/stretch.h"
 
@@ -16,6 +17,7 @@ struct Sheet {
     std::vector<StretchElement> stretch;
     Bending bending;
     std::vector<HingeBend> creases;
+    std::vector<RestCurvature> curved; ///< empty: flat at rest
     Eigen::SparseMatrix<double> beyond_compact; ///< bending.stiffness less its compact form
     std::vector<StrainLimit> limits;            ///< empty: none
     double softness = 1; ///< factor on the membrane; below 1 on the way to a drape, whose steps it lengthens
@@ -40,11 +42,11 @@ void sheet_couplings(const Sheet& sheet, std::vector<std::pair<int, int>>& pairs
 /// Looks up where the elements' blocks lie; to be called whenever the matrix has a new pattern.
 void sheet_slots(Sheet& sheet, const BlockMatrix& matrix);
 
-/// Adds second derivatives, with bending in its compact form.
+/// Adds second derivatives, with bending in its compact form and without what rest curvature adds.
 void sheet_hessian(const Sheet& sheet, const Points& x, HessianKind kind, BlockMatrix& matrix);
 
-/// Adds to y what the compact form leaves out of the product of the second derivative with v.
-void sheet_beyond_compact(const Sheet& sheet, const Eigen::VectorXd& v, Eigen::VectorXd& y);
+/// Adds to y what sheet_hessian leaves out of the product of the second derivative with v.
+void sheet_beyond_compact(const Sheet& sheet, const Points& x, const Eigen::VectorXd& v, Eigen::VectorXd& y);
 
 /// The sheet as any model of cloth.
 class SheetEnergy final : public Energy {
@@ -58,8 +60,8 @@ public:
     void couplings(std::vector<std::pair<int, int>>& pairs) const override { sheet_couplings(sheet, pairs); }
     void add_hessian(const Points& x, HessianKind kind, BlockMatrix& h) const override { sheet_hessian(sheet, x, kind, h); }
     void find_blocks(const BlockMatrix& h) override { sheet_slots(sheet, h); }
-    void add_left_out(const Eigen::VectorXd& v, Eigen::VectorXd& product) const override {
-        sheet_beyond_compact(sheet, v, product);
+    void add_left_out(const Points& x, const Eigen::VectorXd& v, Eigen::VectorXd& product) const override {
+        sheet_beyond_compact(sheet, x, v, product);
     }
 };
 

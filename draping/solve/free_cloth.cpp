@@ -44,12 +44,13 @@ BlockMatrix& FreeCloth::hessian(const Points& x, bool exact, bool& pattern_chang
     }
     energy_->add_hessian(x, exact || !projected_ ? HessianKind::exact : HessianKind::projected, matrix_);
     add_hessian(*this, x, matrix_);
+    matrix_at_ = x;
     return matrix_;
 }
 
 void FreeCloth::multiply(const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
     matrix_.multiply(v, product);
-    energy_->add_left_out(v, product);
+    energy_->add_left_out(matrix_at_, v, product);
     for (int i = 0; i < points(); ++i)
         if (pinned_[i]) product.segment<3>(3 * i) = v.segment<3>(3 * i);
 }

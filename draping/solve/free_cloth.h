@@ -27,7 +27,7 @@ public:
     double feasible_step(const Points&, const Eigen::VectorXd&, std::vector<double>* shares = nullptr) override;
     void damping(const Points& x, const Points& v, Eigen::VectorXd& force) override;
     void add_damping_matrix(const Points& x, double factor, BlockMatrix& h) override;
-    void add_left_out(const Eigen::VectorXd& v, Eigen::VectorXd& product) const override { energy_->add_left_out(v, product); }
+    void add_left_out(const Eigen::VectorXd& v, Eigen::VectorXd& product) const override { energy_->add_left_out(matrix_at_, v, product); }
 
 protected:
     /// What one who adds to the energy couples, and the blocks of its second derivative; false when the matrix lacks one.
@@ -43,6 +43,7 @@ private:
     std::vector<std::pair<int, int>> cloth_couplings_; ///< of the energy, each once
     BlockMatrix matrix_;
     bool matrix_made_ = false;
+    Points matrix_at_; ///< where the matrix was last filled
 };
 
 } // namespace toile

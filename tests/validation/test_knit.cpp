@@ -31,7 +31,7 @@ Term term_of(std::shared_ptr<Energy> model) {
                 model->add_hessian(places(q), kind, matrix);
                 const Eigen::MatrixXd h = dense(matrix.rows(), [&](const VectorXd& v, VectorXd& y) {
                     matrix.multiply(v, y);
-                    model->add_left_out(v, y);
+                    model->add_left_out(places(q), v, y);
                 });
                 for (int i = 0; i < h.rows(); ++i)
                     for (int j = 0; j < h.cols(); ++j)

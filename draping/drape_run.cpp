@@ -16,6 +16,7 @@ namespace {
 constexpr double contact_share = 0.06;     // of the edge length: contact distance of levels that are not the last
 constexpr double coarse_compression = 0.2; // of the fabric's, on levels that are not the last
 constexpr double near = 0.9;               // of the memory limit; the rest is for what is taken between two looks
+constexpr int memory_every = 4;            // calls of tell(): asking the system takes as long as a short loop over the cloth
 constexpr double growth = 1.2;             // power of the vertices with which memory grows; factors outgrow meshes
 constexpr double least_bytes = 5e3;        // times that power: what a level takes, before more was seen
 
@@ -62,7 +63,7 @@ bool DrapeRun::tell(double within, double residual) {
     done = std::max(done, share_begin + (share_end - share_begin) * std::clamp(within, 0.0, 1.0));
     const double so_far = seconds_since(started);
     if (so_far > options.max_seconds) stop("the time limit");
-    if (const double used = memory(); used > near * options.max_memory)
+    if (const double used = told++ % memory_every == 0 ? memory() : 0; used > near * options.max_memory)
         stop(text("the memory limit of %.0f MB, with %.0f MB in use,", options.max_memory / 1e6, used / 1e6));
     if (options.progress) {
         DrapeProgress p;

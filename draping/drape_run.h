@@ -34,6 +34,7 @@ struct DrapeRun {
     Clock::time_point started = Clock::now();
     MemoryUse memory_before = memory_use();
     double used_before = 0, per_power = 0; ///< see fits_memory()
+    int told = 0;                          ///< calls of tell()
     double density = 0;
     bool stopped = false;      ///< by the caller, by time or by memory
     std::string stopped_by = {};

@@ -146,10 +146,7 @@ void Contact::set_options(const ContactOptions& options) {
 void Contact::make_body_trees() {
     body_built_at_ = body_;
     body_moved_ = false;
-    std::vector<Box> points(body_.size());
-    for (std::size_t v = 0; v < body_.size(); ++v) points[v] = ball_box(body_[v], body_slack_[v]);
-    const auto triangles = simplex_boxes(body_, body_triangles_, body_slack_);
-    const auto edges = simplex_boxes(body_, body_edges_, body_slack_);
+    body_serves_ = true;
     const bool fresh = body_point_tree_.size() == 0;
     const auto update = [fresh](Bvh& tree, const std::vector<Box>& boxes) {
         if (fresh)
@@ -157,14 +154,21 @@ void Contact::make_body_trees() {
         else
             tree.refit(boxes);
     };
-    update(body_point_tree_, points);
-    update(body_triangle_tree_, triangles);
-    update(body_edge_tree_, edges);
+    parallel_both([&] { update(body_edge_tree_, simplex_boxes(body_, body_edges_, body_slack_)); },
+                  [&] {
+                      std::vector<Box> points(body_.size());
+                      for (std::size_t v = 0; v < body_.size(); ++v) points[v] = ball_box(body_[v], body_slack_[v]);
+                      update(body_point_tree_, points);
+                      update(body_triangle_tree_, simplex_boxes(body_, body_triangles_, body_slack_));
+                  });
 }
 
 void Contact::set_body(const Points& body) {
     body_ = body;
     body_moved_ = true;
+    body_serves_ = true;
+    for (std::size_t v = 0; v < body_.size() && body_serves_; ++v)
+        body_serves_ = (body_[v] - body_built_at_[v]).norm() <= body_slack_[v];
     active_at_.clear();
 }
 
@@ -204,11 +208,9 @@ double Contact::moved(const std::vector<double>& d, const ContactPair& p) const 
 }
 
 bool Contact::body_serves(const Points* body_dx) const {
-    if (!body_moved_ && !body_dx) return true;
-    for (std::size_t v = 0; v < body_.size(); ++v) {
-        const Vec3 now = body_[v] - body_built_at_[v];
-        if (now.norm() > body_slack_[v] || (body_dx && (now + (*body_dx)[v]).norm() > body_slack_[v])) return false;
-    }
+    if (!body_serves_ || !body_dx) return body_serves_;
+    for (std::size_t v = 0; v < body_.size(); ++v)
+        if ((body_[v] - body_built_at_[v] + (*body_dx)[v]).norm() > body_slack_[v]) return false;
     return true;
 }
 

@@ -163,6 +163,7 @@ private:
     std::vector<int> triangle_of_node_; ///< one of each node's
     double most_slack_ = 0;             ///< m, beyond the step itself
     bool body_moved_ = false;        ///< since body_built_at_
+    bool body_serves_ = true;        ///< no body point has left its slack
     Points built_at_;                ///< where each node was when its pairs were looked for
     std::vector<double> slack_;      ///< how far each node may move from there while the list serves
     std::vector<double> body_slack_; ///< the same for body points

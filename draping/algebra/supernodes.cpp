@@ -26,7 +26,7 @@ SupernodalCholesky::SupernodalCholesky(const SupernodalPattern& p, const BlockMa
     : rows_(p.rows), first_(p.first, p.first + p.count + 1), row_begin_(p.row_begin, p.row_begin + p.count + 1),
       row_(p.row, p.row + p.row_begin[p.count]), order_(p.order, p.order + p.rows),
       value_begin_(p.value_begin, p.value_begin + p.count + 1), value_(p.value_begin[p.count]),
-      shared_update_(p.count), waiting_(p.count, nullptr), beyond_(p.count), x_(p.rows) {
+      shared_update_(p.count), waiting_(p.count, nullptr), rest_(p.count), x_(p.rows) {
     find_tree();
     find_subtrees();
     find_places(a);
@@ -77,7 +77,6 @@ void SupernodalCholesky::find_subtrees() {
         }
         if (parent_[s] < 0) open.push_back(s);
     }
-    std::vector<int> shared;
     while (int(open.size()) < most_subtrees) {
         const auto heaviest = std::max_element(open.begin(), open.end(),
                                                [&](int a, int b) { return cost[a] < cost[b]; });
@@ -85,27 +84,20 @@ void SupernodalCholesky::find_subtrees() {
         if (children_[s].empty()) break;
         open.erase(heaviest);
         open.insert(open.end(), children_[s].begin(), children_[s].end());
-        shared.push_back(s);
+        all_shared_.push_back(s);
     }
-    std::sort(shared.begin(), shared.end());
-    for (const int s : shared) {
+    std::sort(all_shared_.begin(), all_shared_.end());
+    shared_index_.assign(rows_, -1);
+    int shared_columns = 0;
+    for (const int s : all_shared_) {
         for (const int c : children_[s]) height_above[s] = std::max(height_above[s], height_above[c]);
         if (++height_above[s] == int(shared_.size())) shared_.emplace_back();
         shared_[height_above[s]].push_back(s);
-        beyond_[s].resize(height(s) - columns(s));
+        for (int c = first_[s]; c < first_[s + 1]; ++c) shared_index_[c] = shared_columns++;
     }
     std::sort(open.begin(), open.end());
-    in_root_.assign(row_.size(), -1);
-    std::vector<int> place(rows_);
-    for (const int root : open) {
-        // Supernodes are numbered in postorder: a subtree is a range. What it touches beyond itself its root touches.
-        subtrees_.push_back({low[root], root});
-        beyond_[root].resize(height(root) - columns(root));
-        const int below = row_begin_[root] + columns(root);
-        for (int i = below; i < row_begin_[root + 1]; ++i) place[row_[i]] = i - below;
-        for (int i = row_begin_[low[root]]; i < row_begin_[root + 1]; ++i)
-            if (row_[i] >= first_[root + 1]) in_root_[i] = place[row_[i]];
-    }
+    // Supernodes are numbered in postorder: a subtree is a range.
+    for (const int s : open) subtrees_.push_back({low[s], s, Eigen::VectorXf(shared_columns)});
 }
 
 void SupernodalCholesky::find_places(const BlockMatrix& a) {
@@ -166,16 +158,12 @@ bool SupernodalCholesky::factor_columns(int s, float* update, bool alone) {
     if (failed != 0) return false;
     if (below == 0) return true; // a root: there may be others
     float* lower = own.data() + wide;
+    cblas_strsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, below, wide, 1, own.data(), tall,
+                lower, tall);
     if (!alone || below < many_panels) {
-        cblas_strsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, below, wide, 1, own.data(), tall,
-                    lower, tall);
         cblas_ssyrk(CblasColMajor, CblasLower, CblasNoTrans, below, wide, -1, lower, tall, 1, update, below);
         return true;
     }
-    parallel_for(below, panel, [&](int begin, int end) {
-        cblas_strsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, end - begin, wide, 1, own.data(),
-                    tall, lower + begin, tall);
-    });
     parallel_for(below, panel, [&](int begin, int end) {
         cblas_sgemm(CblasColMajor, CblasNoTrans, CblasTrans, below - begin, end - begin, wide, -1, lower + begin,
                     tall, lower + begin, tall, 1, update + std::size_t(begin) * below + begin, below);
@@ -254,28 +242,26 @@ void SupernodalCholesky::solve_columns(int s, Eigen::VectorXf& rest) {
     }
 }
 
-void SupernodalCholesky::forward_in_subtree(int s, const Subtree& subtree) {
+void SupernodalCholesky::forward_in_subtree(int s, Subtree& subtree) {
     Eigen::VectorXf rest;
     solve_columns(s, rest);
-    Eigen::VectorXf& beyond = beyond_[subtree.last];
-    const int below = row_begin_[s] + columns(s), end = first_[subtree.last + 1];
-    for (int i = 0; i < rest.size(); ++i) {
-        const int row = row_[below + i];
-        (row < end ? x_[row] : beyond[in_root_[below + i]]) -= rest[i];
-    }
+    const int* row = row_.data() + row_begin_[s] + columns(s);
+    const int end = first_[subtree.last + 1];
+    for (int i = 0; i < rest.size(); ++i)
+        (row[i] < end ? x_[row[i]] : subtree.beyond[shared_index_[row[i]]]) -= rest[i];
 }
 
+/// Takes what the subtrees, and then the shared supernodes before it, have for its columns, in one order always.
 void SupernodalCholesky::forward_shared(int s) {
-    const int wide = columns(s);
-    beyond_[s].setZero();
-    for (const int c : children_[s]) {
-        const int* to = in_parent_.data() + row_begin_[c] + columns(c);
-        for (int i = 0; i < beyond_[c].size(); ++i)
-            (to[i] < wide ? x_[first_[s] + to[i]] : beyond_[s][to[i] - wide]) += beyond_[c][i];
+    auto own = x_.segment(first_[s], columns(s));
+    for (const Subtree& t : subtrees_) own += t.beyond.segment(shared_index_[first_[s]], columns(s));
+    for (const int before : all_shared_) {
+        if (before >= s) break;
+        const auto begin = row_.begin() + row_begin_[before] + columns(before), end = row_.begin() + row_begin_[before + 1];
+        for (auto row = std::lower_bound(begin, end, first_[s]); row != end && *row < first_[s + 1]; ++row)
+            x_[*row] -= rest_[before][row - begin];
     }
-    Eigen::VectorXf rest;
-    solve_columns(s, rest);
-    beyond_[s] -= rest;
+    solve_columns(s, rest_[s]);
 }
 
 void SupernodalCholesky::backward(int s) {
@@ -303,7 +289,7 @@ void SupernodalCholesky::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
     for (int k = 0; k < rows_; ++k) x_[k] = float(b[order_[k]] / scale);
     parallel_for(int(subtrees_.size()), 1, [&](int begin, int end) {
         for (int k = begin; k < end; ++k) {
-            beyond_[subtrees_[k].last].setZero();
+            subtrees_[k].beyond.setZero();
             for (int s = subtrees_[k].first; s <= subtrees_[k].last; ++s) forward_in_subtree(s, subtrees_[k]);
         }
     });

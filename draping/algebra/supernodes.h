@@ -44,6 +44,7 @@ private:
     /// Supernodes first .. last, descendants of the last and nobody else's.
     struct Subtree {
         int first, last;
+        Eigen::VectorXf beyond; ///< what it takes off the columns shared with others in a solve
     };
     /// The updates that wait for their parents: the last come first.
     struct Stack {
@@ -64,7 +65,7 @@ private:
     bool eliminate_in_subtree(int s, Stack& stack);
     bool eliminate_shared(int s);
     void solve_columns(int s, Eigen::VectorXf& rest);
-    void forward_in_subtree(int s, const Subtree& subtree);
+    void forward_in_subtree(int s, Subtree& subtree);
     void forward_shared(int s);
     void backward(int s);
 
@@ -78,11 +79,12 @@ private:
     std::vector<float> value_;
     std::vector<Subtree> subtrees_;
     std::vector<std::vector<int>> shared_; ///< supernodes of no subtree: those of a level stand on earlier levels alone
-    std::vector<int> in_root_;             ///< beside row_: place of a row beyond a subtree among those below its root
+    std::vector<int> all_shared_;          ///< the same, rising
+    std::vector<int> shared_index_;        ///< per column: place among the columns of `all_shared_`, or -1
     std::vector<Stack> stacks_;            ///< of each subtree
     std::vector<std::vector<float>> shared_update_; ///< of each shared supernode whose parent has yet to be eliminated
     std::vector<const float*> waiting_;    ///< update of each supernode whose parent has yet to be eliminated
-    std::vector<Eigen::VectorXf> beyond_;  ///< what a subtree, by its root, or a shared supernode takes off rows below
+    std::vector<Eigen::VectorXf> rest_;    ///< what a shared supernode takes off the rows below it in a solve
     Eigen::VectorXf x_;
 };
 

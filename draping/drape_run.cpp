@@ -97,7 +97,11 @@ SettleResult DrapeRun::settle_some(ClothProblem& problem, Points& at, Cholesky& 
 PanelFabrics DrapeRun::level_fabrics() const {
     PanelFabrics level = fabrics;
     if (!last_level())
-        for (Fabric& f : level) f.compression *= coarse_compression;
+        for (Fabric& f : level) {
+            f.compression *= coarse_compression;
+            f.curve_warp.clear(); // coarse cloth that is softer at first than where it is held slides off or lies in knots
+            f.curve_weft.clear();
+        }
     return level;
 }
 

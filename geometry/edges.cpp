@@ -88,6 +88,12 @@ std::vector<int> pieces(const std::vector<Triangle>& triangles, int point_count)
     return sets.all();
 }
 
+int edge_between(const EdgeTable& edges, int a, int b) {
+    const std::array<int, 2> ends{std::min(a, b), std::max(a, b)};
+    const auto at = std::lower_bound(edges.ends.begin(), edges.ends.end(), ends);
+    return at != edges.ends.end() && *at == ends ? int(at - edges.ends.begin()) : -1;
+}
+
 double mean_length(const EdgeTable& edges, const Points& points) {
     double sum = 0;
     for (const auto& [a, b] : edges.ends) sum += (points[a] - points[b]).norm();

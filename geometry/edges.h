@@ -21,6 +21,9 @@ struct EdgeTable {
 /// Throws std::invalid_argument when an index is out of range or a triangle names a point twice.
 EdgeTable make_edges(const std::vector<Triangle>& triangles, int point_count);
 
+/// The edge between two points, in either order; -1: there is none.
+int edge_between(const EdgeTable& edges, int a, int b);
+
 /// Mean length of the edges, m; 0 without edges.
 double mean_length(const EdgeTable& edges, const Points& points);
 

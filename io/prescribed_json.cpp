@@ -5,7 +5,6 @@
 #include "io/json.h"
 #include "io/write_file.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace toile {
@@ -14,12 +13,6 @@ namespace {
 
 constexpr double degree = M_PI / 180;
 constexpr std::uintmax_t most_bytes = 256u << 20;
-
-int find_edge(const Prescribed& data, int a, int b) {
-    const std::array<int, 2> ends{std::min(a, b), std::max(a, b)};
-    const auto at = std::lower_bound(data.edges.ends.begin(), data.edges.ends.end(), ends);
-    return at != data.edges.ends.end() && *at == ends ? int(at - data.edges.ends.begin()) : -1;
-}
 
 /// The edges of "along": "all", "borders", or points one after the other.
 std::vector<int> edges_along(const JsonView& view, const std::vector<int>& point_of_file, const Prescribed& data) {
@@ -39,7 +32,7 @@ std::vector<int> edges_along(const JsonView& view, const std::vector<int>& point
         const int p = point_of_file[std::size_t(number - 1)];
         if (p < 0) point.fail("a point of a triangle");
         if (k > 0) {
-            const int e = find_edge(data, last, p);
+            const int e = edge_between(data.edges, last, p);
             if (e < 0) point.fail(text("joined to point %d by an edge of the mesh", last_number));
             edges.push_back(e);
         }

@@ -23,12 +23,6 @@ double side_length(const Pattern& pattern, const SeamSide& side) {
     return sum;
 }
 
-int edge_between(const EdgeTable& edges, int a, int b) {
-    const std::array<int, 2> ends{std::min(a, b), std::max(a, b)};
-    const auto at = std::lower_bound(edges.ends.begin(), edges.ends.end(), ends);
-    return at != edges.ends.end() && *at == ends ? int(at - edges.ends.begin()) : -1;
-}
-
 RestShape rest_of(const Garment& g) {
     RestShape rest;
     for (const Triangle& t : g.triangles) {

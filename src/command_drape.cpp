@@ -92,13 +92,6 @@ void refuse_useless(const DrapeArguments& a) {
     refuse_useless_frames(a);
 }
 
-std::string joined(const std::vector<std::string>& names) {
-    std::string text;
-    for (const std::string& name : names)
-        text += (text.empty() ? "" : ", ") + name;
-    return text;
-}
-
 std::string percent(double share) {
     return text("%.2f %%", 100 * share);
 }
@@ -142,7 +135,7 @@ void summarise(std::ostream& out, const DrapeOutcome& outcome) {
     constexpr std::size_t most_names = 12; // of a sequence, the first and the last tell the others
     std::vector<std::string> written = outcome.written;
     if (written.size() > most_names) written = {written.front(), "...", written.back()};
-    if (!written.empty()) out << "written: " << joined(written) << '\n';
+    list_written(out, written);
 }
 
 std::string first_failure(const DrapeOutcome& outcome) {

@@ -50,6 +50,11 @@ int guarded(const Command& command, const Console& console) {
 
 } // namespace
 
+void list_written(std::ostream& out, const std::vector<std::string>& written) {
+    for (std::size_t k = 0; k < written.size(); ++k)
+        out << (k == 0 ? "written: " : ", ") << written[k] << (k + 1 == written.size() ? "\n" : "");
+}
+
 int run_command_line(const std::vector<std::string>& arguments, const Console& console) {
     CLI::App app("Drapes sewing patterns on bodies and proves the result.", "toile");
     app.set_version_flag("--version", version_text(), "Versions of toile, its libraries and the BLAS in use");

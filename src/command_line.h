@@ -24,6 +24,9 @@ struct Console {
 /// Arguments without the program's name. Returns an ExitCode; every failure is one sentence on console.err.
 int run_command_line(const std::vector<std::string>& arguments, const Console& console);
 
+/// The files that a command has written, on one line; nothing when there are none.
+void list_written(std::ostream& out, const std::vector<std::string>& written);
+
 /// What the command line asks for, once it is parsed.
 using Command = std::function<int(const Console&)>;
 

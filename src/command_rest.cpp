@@ -43,11 +43,6 @@ void refuse_useless(const RestArguments& a) {
     }
 }
 
-void list_written(std::ostream& out, const std::vector<std::string>& written) {
-    for (std::size_t k = 0; k < written.size(); ++k)
-        out << (k == 0 ? "written: " : ", ") << written[k] << (k + 1 == written.size() ? "\n" : "");
-}
-
 void summarise(std::ostream& out, const RestOutcome& outcome) {
     const auto r = nlohmann::json::parse(outcome.report);
     const auto& d = r["data"];

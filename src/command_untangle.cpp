@@ -53,8 +53,7 @@ void summarise(std::ostream& out, const UntangleOutcome& outcome) {
         << show_length(c["displacement"]["max"])
         << text("; edges changed by up to %.1f %%, %.2f %% in the mean\n", 100 * c["edge_length"]["max"].get<double>(),
                 100 * c["edge_length"]["mean"].get<double>());
-    for (std::size_t k = 0; k < outcome.written.size(); ++k)
-        out << (k == 0 ? "written: " : ", ") << outcome.written[k] << (k + 1 == outcome.written.size() ? "\n" : "");
+    list_written(out, outcome.written);
 }
 
 int untangle_command(const UntangleArguments& arguments, const Console& console) {

@@ -69,8 +69,7 @@ private:
     int face_of(std::array<int, 3> corner) const {
         // Pairs name a face by its corners; its edges lead to it.
         std::sort(corner.begin(), corner.end());
-        const auto edge = std::lower_bound(edges_.ends.begin(), edges_.ends.end(), std::array{corner[0], corner[1]});
-        const int e = int(edge - edges_.ends.begin());
+        const int e = edge_between(edges_, corner[0], corner[1]);
         for (int k = edges_.first[e]; k < edges_.first[e + 1]; ++k) {
             Triangle t = triangles_[edges_.incident[k]];
             std::sort(t.begin(), t.end());
@@ -80,11 +79,7 @@ private:
     }
 
     Vec3 out_of_body(const ContactPair& p, const Normals& n, int nodes) const {
-        if (p.edge_edge) {
-            const std::array<int, 2> ends{p.p[2] - nodes, p.p[3] - nodes};
-            const auto at = std::lower_bound(edges_.ends.begin(), edges_.ends.end(), ends);
-            return n.edge[at - edges_.ends.begin()];
-        }
+        if (p.edge_edge) return n.edge[edge_between(edges_, p.p[2] - nodes, p.p[3] - nodes)];
         if (p.p[0] < nodes) return n.face[face_of({p.p[1] - nodes, p.p[2] - nodes, p.p[3] - nodes})];
         return -n.point[p.p[0] - nodes]; // the point is the first of the pair
     }

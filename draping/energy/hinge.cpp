@@ -28,10 +28,6 @@ Rows from_first(int k) {
     return d;
 }
 
-std::array<Vec3, 4> places(const HingeBend& b, const Points& x) {
-    return {x[b.nodes[0]], x[b.nodes[1]], x[b.nodes[2]], x[b.nodes[3]]};
-}
-
 /// How far the angle is from rest. Not the short way round, which from a fold the wrong way leads through the cloth.
 double turned(const HingeBend& b, double angle) { return angle - b.rest; }
 
@@ -136,7 +132,7 @@ std::vector<HingeBend> make_creases(const Garment& garment, const std::vector<Fa
 double value(const std::vector<HingeBend>& bends, const Points& x) {
     double sum = 0;
     for (const HingeBend& b : bends) {
-        const double off = turned(b, hinge_angle(places(b, x)).value);
+        const double off = turned(b, hinge_angle(b.nodes, x).value);
         sum += 0.5 * b.stiffness * off * off;
     }
     return sum;
@@ -144,14 +140,14 @@ double value(const std::vector<HingeBend>& bends, const Points& x) {
 
 void add_gradient(const std::vector<HingeBend>& bends, const Points& x, Eigen::VectorXd& g) {
     for (const HingeBend& b : bends) {
-        const HingeAngle angle = hinge_angle(places(b, x));
+        const HingeAngle angle = hinge_angle(b.nodes, x);
         for (int k = 0; k < 4; ++k)
             g.segment<3>(3 * b.nodes[k]) += b.stiffness * turned(b, angle.value) * angle.gradient[k];
     }
 }
 
 Constraint constraint(const HingeBend& bend, const Points& x) {
-    const HingeAngle angle = hinge_angle(places(bend, x));
+    const HingeAngle angle = hinge_angle(bend.nodes, x);
     return {4, bend.nodes, turned(bend, angle.value), angle.gradient, bend.stiffness};
 }
 
@@ -163,7 +159,7 @@ void couplings(const std::vector<HingeBend>& bends, std::vector<std::pair<int, i
 
 void add_hessian(const std::vector<HingeBend>& bends, const Points& x, HessianKind kind, BlockMatrix& h) {
     for (const HingeBend& b : bends) {
-        const std::array<Vec3, 4> at = places(b, x);
+        const std::array<Vec3, 4> at = hinge_corners(b.nodes, x);
         const HingeAngle angle = hinge_angle(at);
         Eigen::Matrix<double, 12, 1> slope;
         for (int k = 0; k < 4; ++k) slope.segment<3>(3 * k) = angle.gradient[k];

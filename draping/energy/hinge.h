@@ -29,6 +29,11 @@ struct HingeAngle {
     std::array<Vec3, 4> gradient;
 };
 HingeAngle hinge_angle(const std::array<Vec3, 4>& x);
+/// The same of four nodes, in a hinge's order, among all.
+inline std::array<Vec3, 4> hinge_corners(const std::array<int, 4>& nodes, const Points& x) {
+    return {x[nodes[0]], x[nodes[1]], x[nodes[2]], x[nodes[3]]};
+}
+inline HingeAngle hinge_angle(const std::array<int, 4>& nodes, const Points& x) { return hinge_angle(hinge_corners(nodes, x)); }
 Eigen::Matrix<double, 12, 12> hinge_hessian(const std::array<Vec3, 4>& x);
 
 /// Bending of one hinge: with kappa = (theta - theta0) / l, l the mean altitude of its two triangles over the edge and A

@@ -105,7 +105,7 @@ DataCount count_data(const Prescribed& data, const Points& x) {
         mean += s.length / count.lengths;
     }
     for (const HingeBend& b : energy.angles()) {
-        const HingeAngle a = hinge_angle({x[b.nodes[0]], x[b.nodes[1]], x[b.nodes[2]], x[b.nodes[3]]});
+        const HingeAngle a = hinge_angle(b.nodes, x);
         for (int k = 0; k < 4; ++k) add(row, b.nodes[k], mean * a.gradient[k]);
         ++row;
     }

@@ -52,7 +52,7 @@ void set_edges(Garment& g, const Points& x) {
 void set_creases(Garment& g, const Points& x) {
     for (const Hinge& h : hinges_of(g))
         if (is_crease(g, h.edge))
-            g.rest.angles[h.edge] = hinge_angle({x[h.nodes[0]], x[h.nodes[1]], x[h.nodes[2]], x[h.nodes[3]]}).value;
+            g.rest.angles[h.edge] = hinge_angle(h.nodes, x).value;
 }
 
 void set_curvature(Garment& g, const Points& x) {

@@ -137,7 +137,7 @@ bool alike(const std::vector<double>& a, const std::vector<double>& b, double si
 std::vector<double> angles_of(const Prescribed& data, const Points& x) {
     std::vector<double> angles(data.edges.size(), 0.0);
     for (const Hinge& h : hinges_of(data.edges, data.triangles))
-        angles[h.edge] = hinge_angle({x[h.nodes[0]], x[h.nodes[1]], x[h.nodes[2]], x[h.nodes[3]]}).value;
+        angles[h.edge] = hinge_angle(h.nodes, x).value;
     return angles;
 }
 

@@ -10,10 +10,6 @@ namespace toile {
 
 namespace {
 
-std::array<Vec3, 4> corners(const Hinge& h, const Points& x) {
-    return {x[h.nodes[0]], x[h.nodes[1]], x[h.nodes[2]], x[h.nodes[3]]};
-}
-
 /// Of a triangle with these lengths (Heron), m2; not a number where there is none.
 double area_of(double a, double b, double c) {
     const double s = (a + b + c) / 2;
@@ -50,7 +46,7 @@ Prescribed measured(const std::vector<Triangle>& triangles, const Points& points
             throw std::invalid_argument(text("the triangle of points %d, %d and %d has no area", t[0] + 1, t[1] + 1, t[2] + 1));
     for (const auto& [a, b] : data.edges.ends) data.length.push_back((points[b] - points[a]).norm());
     data.angle.assign(data.edges.size(), 0.0);
-    for (const Hinge& h : hinges_of(data.edges, triangles)) data.angle[h.edge] = hinge_angle(corners(h, points)).value;
+    for (const Hinge& h : hinges_of(data.edges, triangles)) data.angle[h.edge] = hinge_angle(h.nodes, points).value;
     data.length_weight.assign(data.edges.size(), 1.0);
     data.angle_weight = data.length_weight;
     return data;

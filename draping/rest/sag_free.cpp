@@ -33,7 +33,7 @@ Member length_member(const Prescribed& data, const Points& x, int e, double chan
 }
 
 Member angle_member(const HingeBend& bend, const Points& x, double change) {
-    const HingeAngle angle = hinge_angle({x[bend.nodes[0]], x[bend.nodes[1]], x[bend.nodes[2]], x[bend.nodes[3]]});
+    const HingeAngle angle = hinge_angle(bend.nodes, x);
     Member m;
     m.count = 4;
     m.nodes = bend.nodes;

@@ -48,7 +48,7 @@ TEST_CASE("cloth that nothing holds folds to the angle that was pressed into it"
         int creases = 0;
         for (const Hinge& h : hinges_of(g)) {
             const auto& n = h.nodes;
-            const double now = hinge_angle({s.x[n[0]], s.x[n[1]], s.x[n[2]], s.x[n[3]]}).value;
+            const double now = hinge_angle(n, s.x).value;
             CHECK(now == Approx(g.rest.angles[h.edge]).margin(1e-3));
             creases += is_crease(g, h.edge);
             if (!is_crease(g, h.edge)) continue;

@@ -110,7 +110,7 @@ TEST_CASE("a skirt falls in the pleats that were pressed into it") {
     for (const Hinge& h : hinges_of(g)) {
         if (!is_crease(g, h.edge)) continue;
         const auto& n = h.nodes;
-        const double share = hinge_angle({x[n[0]], x[n[1]], x[n[2]], x[n[3]]}).value / g.rest.angles[h.edge];
+        const double share = hinge_angle(n, x).value / g.rest.angles[h.edge];
         ++creases;
         folded += share > 0.5;
     }

@@ -36,6 +36,7 @@ void drape_one(const ManifestEntry& e, const std::string& data, double edge_leng
     std::string iterations, factorisations;
     for (const LevelReport& level : outcome.result.levels) {
         iterations += (iterations.empty() ? "" : " / ") + std::to_string(level.iterations);
+        if (level.part_iterations > 0) iterations += "+" + std::to_string(level.part_iterations);
         factorisations += (factorisations.empty() ? "" : " / ") + std::to_string(level.factorisations);
     }
     const auto& strain = r["strain"];

@@ -70,6 +70,11 @@ ClothProblem::ClothProblem(std::unique_ptr<Energy> model, const Garment& garment
     }
 }
 
+ClothProblem::ClothProblem(std::unique_ptr<SheetEnergy> part, std::vector<double> node_mass, ContactCloth cloth,
+                           const TriMesh& body, const ContactOptions& contact)
+    : FreeCloth(std::move(part), std::move(node_mass)), RestingContact(std::move(cloth), body, contact),
+      sheet_(&static_cast<SheetEnergy*>(energy_.get())->sheet) {}
+
 void ClothProblem::limit_strain(double turn, double tighter) {
     if (!sheet_) return;
     sheet_->limits = limits_;

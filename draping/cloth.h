@@ -33,7 +33,12 @@ public:
     ClothProblem(std::unique_ptr<Energy> model, const Garment& garment, const PanelFabrics& fabrics, const TriMesh& body,
                  const ContactOptions& contact);
 
+    /// A part of a sheet, with the limits that it has.
+    ClothProblem(std::unique_ptr<SheetEnergy> part, std::vector<double> node_mass, ContactCloth cloth, const TriMesh& body,
+                 const ContactOptions& contact);
+
     Sheet* sheet() { return sheet_; } ///< null: of another model
+    const Sheet* sheet() const { return sheet_; }
 
     /// Turns the strain limits of a sheet on, as hard as `turn` says (see StrainLimit), and `tighter` by that share than
     /// the fabric's.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/drape_run.h"
 
+#include "draping/cloth_part.h"
 #include "draping/hooks.h"
 #include "geometry/text.h"
 
@@ -86,6 +87,12 @@ SettleResult DrapeRun::settle_some(ClothProblem& problem, Points& at, Cholesky& 
         const double within = (base - from) / std::max(span, 1e-9);
         return tell(within + (1 - within) * (1 - std::exp(-i / 60.0)), r) && (!goes_on || goes_on(i, r));
     };
+    if (problem.sheet() && o.exact_below > 0)
+        o.relax_part = [&](Points& y, const Eigen::VectorXd& step, double residual) {
+            const int iterations = toile::relax_part(problem, y, step, residual, edge_length(), o);
+            result.levels.back().part_iterations += iterations;
+            return iterations > 0;
+        };
     const SettleResult r = settle(problem, at, factor, o);
     result.residual = r.residual;
     iterations_left -= r.iterations;

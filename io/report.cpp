@@ -50,6 +50,7 @@ Json levels(const DrapeResult& r) {
         out.push_back({{"edge_length", l.edge_length},
                        {"vertices", l.vertices},
                        {"iterations", l.iterations},
+                       {"part_iterations", l.part_iterations},
                        {"factorisations", l.factorisations},
                        {"seconds", l.seconds}});
     return out;

@@ -293,6 +293,8 @@ void Contact::find_pairs(const std::vector<char>& moved_node) {
                     find(q, [&](ContactPair p) {
                         const auto out = [&](int i) { return !left_out_.empty() && left_out_[i]; };
                         if (!p.with_body && std::any_of(p.p.begin(), p.p.end(), out)) return;
+                        const auto still = [&](int i) { return i >= nodes_ || cloth_.still[i]; };
+                        if (!cloth_.still.empty() && std::all_of(p.p.begin(), p.p.end(), still)) return;
                         const Barrier& b = p.with_body ? options_.body : options_.cloth;
                         const auto corner = corners(x, p);
                         const double reach = b.distance + moved(slack, p);

@@ -38,7 +38,14 @@ struct ContactCloth {
     /// A node and the ends of an edge to whose inside it is sewn: what holds the node and what holds the edge lie
     /// on each other and do not touch.
     std::vector<std::array<int, 3>> sewn_to_edge;
+    std::vector<char> still; ///< nodes that never move (1 each, or empty): pairs of theirs alone are not looked for
 };
+
+/// Marks the nodes of all triangles that have a marked one.
+void add_ring(const std::vector<Triangle>& triangles, std::vector<char>& marked);
+
+/// The cloth of nodes whose `local` number is not negative, over these numbers: what has all its nodes there.
+ContactCloth part_of(const ContactCloth& cloth, const std::vector<int>& local, int nodes);
 
 /// A point-triangle or edge-edge pair. Indices below the node count are nodes, others are body points.
 struct ContactPair {
@@ -71,6 +78,7 @@ public:
     Contact(ContactCloth cloth, const TriMesh& body, const ContactOptions& options);
 
     const ContactOptions& options() const { return options_; }
+    const ContactCloth& cloth() const { return cloth_; }
     /// New barriers; the next prepare() makes a new list.
     void set_options(const ContactOptions& options);
 
@@ -117,6 +125,13 @@ public:
     /// Nodes of the cloth (1 each, or empty) whose contact with other cloth is left out: what cannot be taken apart
     /// yet must not keep all the rest from touching.
     void leave_out(std::vector<char> nodes);
+    const std::vector<char>& left_out() const { return left_out_; }
+
+    /// Marks every node of cloth (1 each) that nodes which are `moving` (1 each) may come within reach of when none
+    /// goes farther than `travel` (m) from x, and theirs and those next to them.
+    std::vector<char> within_travel(const Points& x, const std::vector<char>& moving, double travel) const;
+    /// The body that they may come within reach of meanwhile, with all triangles round each of its points that matters.
+    TriMesh body_within_travel(const Points& x, const std::vector<char>& moving, double travel) const;
 
     /// Moves nodes of cloth that lie too near each other apart, to twice their floor; returns how many pairs still
     /// are too near. For a start that the barrier cannot take but that crosses nothing.

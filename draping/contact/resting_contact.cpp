@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 namespace toile {
 
@@ -25,6 +26,59 @@ void RestingContact::rest_here(const Points& x, const FrictionCoefficients& coef
     residual_ = renewed_at_ = std::numeric_limits<double>::infinity();
     near_rest_ = rising_ = false;
     trusted_ = at_rest;
+}
+
+void RestingContact::begin_as_part(const RestingContact& whole, const std::vector<int>& nodes, const Points& x) {
+    std::vector<int> local(x.size(), -1);
+    for (int k = 0; k < int(nodes.size()); ++k) local[nodes[k]] = k;
+    const auto inside = [&local](const Tie& tie) {
+        return std::all_of(tie.point.begin(), tie.point.end(), [&](int i) { return local[i] >= 0; });
+    };
+    friction = whole.friction;
+    friction.ties.clear();
+    cloth_friction = whole.cloth_friction;
+    std::erase_if(cloth_friction.ties, [&](const Tie& tie) { return !inside(tie); });
+    for (Tie& tie : cloth_friction.ties)
+        for (int& i : tie.point) i = local[i];
+    arrived_at_.clear();
+    std::vector<char> out;
+    for (const int i : nodes) {
+        if (!whole.friction.ties.empty()) {
+            friction.ties.push_back(whole.friction.ties[i]);
+            friction.ties.back().point[0] = local[i];
+        }
+        arrived_at_.push_back(x[i]);
+        if (!whole.contact().left_out().empty()) out.push_back(whole.contact().left_out()[i]);
+    }
+    contact_.leave_out(std::move(out));
+    renew_every_ = whole.renew_every_;
+    arrivals_ = whole.arrivals_;
+    near_rest_ = whole.near_rest_;
+    rising_ = whole.rising_;
+    residual_ = whole.residual_;
+    renewed_at_ = whole.renewed_at_;
+}
+
+void RestingContact::end_part(const RestingContact& part, const std::vector<int>& nodes, const Points& x) {
+    const std::vector<char>& still = part.contact().cloth().still;
+    std::vector<char> moved(x.size(), 0);
+    for (std::size_t k = 0; k < nodes.size(); ++k) moved[nodes[k]] = !still[k];
+    for (std::size_t k = 0; k < part.friction.ties.size(); ++k) {
+        if (still[k]) continue;
+        friction.ties[nodes[k]] = part.friction.ties[k];
+        friction.ties[nodes[k]].point[0] = nodes[k];
+    }
+    std::erase_if(cloth_friction.ties, [&](const Tie& tie) {
+        return std::any_of(tie.point.begin(), tie.point.end(), [&](int i) { return moved[i]; });
+    });
+    for (Tie tie : part.cloth_friction.ties) {
+        for (int& i : tie.point) i = nodes[i];
+        cloth_friction.ties.push_back(tie);
+    }
+    std::sort(cloth_friction.ties.begin(), cloth_friction.ties.end(), [](const Tie& a, const Tie& b) {
+        return std::tie(a.edge_edge, a.point) < std::tie(b.edge_edge, b.point);
+    });
+    arrived_at_ = x;
 }
 
 void RestingContact::match_cloth_friction(const Points& x) {

@@ -21,6 +21,11 @@ public:
     /// friction is at once what holds it there; otherwise it follows contact slowly.
     void rest_here(const Points& x, const FrictionCoefficients& coefficients, bool at_rest = false);
 
+    /// Goes on with the contact and friction of a larger cloth in the state x, whose node nodes[k] is node k here.
+    void begin_as_part(const RestingContact& whole, const std::vector<int>& nodes, const Points& x);
+    /// Goes on with what has become of the friction of such a part of this; x is the state now.
+    void end_part(const RestingContact& part, const std::vector<int>& nodes, const Points& x);
+
     /// Finds the pairs that act at x, on which gradients and second derivatives stand; what is lagged stays as it is.
     void touch(const Points& x);
 

@@ -74,6 +74,25 @@ template <class F> void for_elements(const Sheet& sheet, F&& f) {
     }
 }
 
+std::vector<int> nodes_of(const StretchElement& e) { return {e.patch.nodes.begin(), e.patch.nodes.begin() + e.patch.count}; }
+std::vector<int> nodes_of(const HingeBend& e) { return {e.nodes.begin(), e.nodes.end()}; }
+std::vector<int> nodes_of(const RestCurvature& e) { return e.nodes; }
+
+template <class Element> bool acts_on(const Element& e, const std::vector<char>& moving) {
+    const std::vector<int> nodes = nodes_of(e);
+    return std::any_of(nodes.begin(), nodes.end(), [&](int i) { return moving[i]; });
+}
+
+Eigen::SparseMatrix<double> part_of(const Eigen::SparseMatrix<double>& k, const std::vector<int>& local, int nodes) {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (int j = 0; j < k.outerSize(); ++j)
+        for (Eigen::SparseMatrix<double>::InnerIterator entry(k, j); local[j] >= 0 && entry; ++entry)
+            if (local[entry.row()] >= 0) entries.emplace_back(local[entry.row()], local[j], entry.value());
+    Eigen::SparseMatrix<double> part(nodes, nodes);
+    part.setFromTriplets(entries.begin(), entries.end());
+    return part;
+}
+
 } // namespace
 
 Sheet make_sheet(const Garment& garment, const std::vector<Fabric>& fabrics) {
@@ -102,6 +121,54 @@ Sheet make_sheet(const Garment& garment, const std::vector<Fabric>& fabrics) {
     sheet.beyond_compact = sheet.bending.stiffness - compact_matrix(sheet.bending);
     colour(sheet);
     return sheet;
+}
+
+std::vector<char> coupled_nodes(const Sheet& sheet, const std::vector<char>& moving) {
+    std::vector<char> coupled = moving;
+    const auto mark = [&](const auto& elements) {
+        for (const auto& e : elements)
+            if (acts_on(e, moving))
+                for (const int i : nodes_of(e)) coupled[i] = 1;
+    };
+    mark(sheet.stretch);
+    mark(sheet.creases);
+    mark(sheet.curved);
+    const auto& k = sheet.bending.stiffness;
+    for (int j = 0; j < k.outerSize(); ++j)
+        for (Eigen::SparseMatrix<double>::InnerIterator entry(k, j); moving[j] && entry; ++entry) coupled[entry.row()] = 1;
+    return coupled;
+}
+
+Sheet part_of(const Sheet& sheet, const std::vector<char>& moving, const std::vector<int>& local, int nodes) {
+    Sheet part;
+    part.softness = sheet.softness;
+    for (std::size_t t = 0; t < sheet.stretch.size(); ++t) {
+        if (!acts_on(sheet.stretch[t], moving)) continue;
+        part.stretch.push_back(sheet.stretch[t]);
+        part.bending.compact.push_back(sheet.bending.compact[t]);
+        part.bend_place.push_back(sheet.bend_place[t]);
+        if (!sheet.limits.empty()) part.limits.push_back(sheet.limits[t]);
+        Patch& patch = part.stretch.back().patch;
+        for (int a = 0; a < patch.count; ++a) patch.nodes[a] = local[patch.nodes[a]];
+        BendElement& bend = part.bending.compact.back();
+        for (int a = 0; a < bend.count; ++a) bend.nodes[a] = local[bend.nodes[a]];
+        if (!sheet.limits.empty())
+            for (int& i : part.limits.back().nodes) i = local[i];
+    }
+    for (const HingeBend& crease : sheet.creases) {
+        if (!acts_on(crease, moving)) continue;
+        part.creases.push_back(crease);
+        for (int& i : part.creases.back().nodes) i = local[i];
+    }
+    for (const RestCurvature& curved : sheet.curved) {
+        if (!acts_on(curved, moving)) continue;
+        part.curved.push_back(curved);
+        for (int& i : part.curved.back().nodes) i = local[i];
+    }
+    part.bending.stiffness = part_of(sheet.bending.stiffness, local, nodes);
+    part.beyond_compact = part_of(sheet.beyond_compact, local, nodes);
+    colour(part);
+    return part;
 }
 
 double sheet_value(const Sheet& sheet, const Points& x) {

@@ -33,6 +33,14 @@ struct Sheet {
 /// `fabrics` has one entry per panel. Strain limits are made but act only when `limits` is not cleared.
 Sheet make_sheet(const Garment& garment, const std::vector<Fabric>& fabrics);
 
+/// Which nodes elements share with those that are marked: with `moving` only these move, and only such elements matter.
+std::vector<char> coupled_nodes(const Sheet& sheet, const std::vector<char>& moving);
+
+/// What of a sheet acts on nodes that are `moving` (1 each), over the nodes of a part: `local` has the number there of
+/// every node, -1 for those that are not in it; it holds all coupled_nodes(). Its value is that of the sheet but for a
+/// constant, and so are the derivatives by what moves; those by others mean nothing.
+Sheet part_of(const Sheet& sheet, const std::vector<char>& moving, const std::vector<int>& local, int nodes);
+
 double sheet_value(const Sheet& sheet, const Points& x);
 void sheet_gradient(const Sheet& sheet, const Points& x, Points& gradient);
 

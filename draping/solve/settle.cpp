@@ -24,6 +24,7 @@ constexpr double sufficient = 1e-4;   // of the decrease that the slope promises
 constexpr double static_time_step = 100; // s: from there on steps are Newton's
 constexpr double most_time_step = 1e6;   // s: no mass is left, but some steps shorter a loose piece has one again
 constexpr double too_stiff = 1.2;        // gain over what was promised from which longer steps are looked for
+constexpr int relax_every = 3;       // steps of the whole, between those of a part
 constexpr double tail_time_step = 1; // s: before that the state is still travelling, however small the forces
 
 double longest(const VectorXd& dx) {
@@ -188,7 +189,7 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
     VectorXd g, dx, hdx, shift, last;
     double h = options.time_step;
     double radius = 0; // of the trust region, 0 while not in the tail
-    int failures = 0;
+    int failures = 0, whole_steps = 0;
     double gained = 0; // by the last step, as a share of what the matrix promised
     bool still = false, tail = false, stale = false;
     std::vector<double> shares;
@@ -306,6 +307,9 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
             failures = 0;
             still = options.still > 0 && t == 1 && longest(dx) < options.still && h > 1;
             problem.arrive(x);
+            if (options.relax_part && h > static_time_step && ++whole_steps % relax_every == 0 &&
+                options.relax_part(x, last, result.residual))
+                problem.arrive(x);
         }
     }
 }

@@ -18,6 +18,9 @@ struct SettleOptions {
     double max_step = 0.01;       ///< m, no point moves farther in one iteration
     double exact_below = 20;      ///< residual below which the exact Hessian is used
     double still = 0;             ///< m, also settled when a full step moves no point farther than this
+    /// Called now and then with the state that a Newton step has led to, the step, and the residual before it: may bring x
+    /// nearer to rest where most of the motion is. Returns whether it moved x.
+    std::function<bool(Points& x, const Eigen::VectorXd& step, double residual)> relax_part;
     /// Called after every iteration; false stops.
     std::function<bool(int iteration, double residual)> progress;
 };

@@ -28,7 +28,7 @@ DrapeResult result_of(const test::Skirt& skirt) {
     r.tolerance = 1e-3;
     r.friction = {0.3, 0.25};
     r.barrier = {5e-4, 1e6};
-    r.levels = {{0.02, 100, 20, 5, 0.5}, {0.01, 400, 12, 3, 0.7}};
+    r.levels = {{0.02, 100, 20, 0, 5, 0.5}, {0.01, 400, 12, 7, 3, 0.7}};
     r.seconds = {{"sew", 0.5}, {"settle", 0.3}, {"settle", 0.4}};
     r.contact.seconds = 0.25;
     r.decisions = {"no contact of cloth with cloth: no two parts come within 3 mm"};

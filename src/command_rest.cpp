@@ -4,6 +4,7 @@
 #include "geometry/parallel.h"
 #include "geometry/text.h"
 #include "io/write_garment.h"
+#include "src/moulded_job.h"
 #include "src/options.h"
 #include "src/rest_job.h"
 #include "src/sag_free_job.h"
@@ -22,7 +23,7 @@ struct RestArguments {
     RestJob job;
     std::string fabric, hold;
     double length_change = 5, angle_change = 90; // %, degrees
-    bool sag_free = false;
+    bool sag_free = false, moulded = false;
     int threads = 0;
     bool quiet = false, json = false, keep_energy = false;
 };
@@ -114,9 +115,52 @@ int sag_free_command(const RestArguments& arguments, const Console& console) {
     return exit_not_converged;
 }
 
+void refuse_with_moulded(const RestArguments& a) {
+    const RestJob& job = a.job;
+    if (a.sag_free) throw CommandLineError("--moulded and --sag-free exclude each other");
+    if (!job.rest.empty() || !job.lengths_of.empty() || !job.angles_of.empty() || !job.data.empty() || job.length_weight > 0 ||
+        job.relax || a.keep_energy)
+        throw CommandLineError("--moulded takes the mesh as the rest shape: --lengths-of, --angles-of, --data, --length-weight, "
+                               "--rest, --keep-energy and --relax do not go with it");
+}
+
+void summarise(std::ostream& out, const MouldedOutcome& outcome) {
+    const auto r = nlohmann::json::parse(outcome.report);
+    for (std::size_t k = 0; k < r["states"].size(); ++k) {
+        const auto& s = r["states"][k];
+        out << "state " << k + 1 << text(": energy %.10g J, angles up to %.3g degrees from those moulded", s["energy"].get<double>(),
+                                         s["angle_off_max"].get<double>());
+        if (!s["mirror_of"].is_null()) out << ", the mirror of state " << s["mirror_of"];
+        out << '\n';
+    }
+    if (r["unsettled"] > 0) out << r["unsettled"] << " of " << r["starts"] << " starts did not come to rest\n";
+    list_written(out, outcome.written);
+}
+
+int moulded_command(const RestArguments& arguments, const Console& console) {
+    refuse_with_moulded(arguments);
+    MouldedJob job;
+    job.shape = arguments.job.shape;
+    if (!arguments.fabric.empty()) job.fabric = arguments.fabric;
+    job.output = arguments.job.output;
+    job.all_states = arguments.job.all_states;
+    job.preview = arguments.job.preview;
+    job.report = arguments.job.report;
+    const MouldedOutcome outcome = run_moulded(job);
+    if (arguments.json)
+        console.out << outcome.report << std::flush;
+    else if (!arguments.quiet)
+        summarise(console.out, outcome);
+    console.out << std::flush;
+    if (!outcome.states.found.empty()) return exit_made;
+    console.err << "toile: stalled: from no start did the cloth come to rest" << std::endl;
+    return exit_not_converged;
+}
+
 int rest_command(const RestArguments& arguments, const Console& console) {
     refuse_useless(arguments);
     set_threads(arguments.threads);
+    if (arguments.moulded) return moulded_command(arguments, console);
     if (arguments.sag_free) return sag_free_command(arguments, console);
     RestJob job = arguments.job;
     if (!arguments.fabric.empty()) job.fabric = arguments.fabric;
@@ -150,6 +194,7 @@ void add_rest(CLI::App& app, Command& chosen) {
         ->type_name("NUMBER");
     command.add_flag("--keep-energy", a->keep_energy, "The rest shape stays what was asked for, and its energy frozen in (default)");
     command.add_flag("--relax", job.relax, "The rest shape is what the nearest shape measures: no energy is left");
+    command.add_flag("--moulded", a->moulded, "The mesh is how cloth of this fabric was moulded: find all shapes in which it stays");
     CLI::Option* sag_free = command.add_flag("--sag-free", a->sag_free, "Find the rest shape with which cloth of this fabric hangs as the mesh lies, gravity along -y");
     command.add_option("--hold", a->hold, "With --sag-free, what is held: points by number, 1,2,3, or \"borders\", or a file of numbers")
         ->needs(sag_free)

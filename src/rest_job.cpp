@@ -25,13 +25,6 @@ using Json = nlohmann::ordered_json;
 constexpr double degree = M_PI / 180;
 constexpr int most_second_opinions = 2000; // points; L-BFGS takes hundreds of evaluations
 
-/// name.obj, name-2.obj, name-3.obj ...
-std::string numbered(const std::string& path, int k) {
-    if (k == 0) return path;
-    const fs::path p(path);
-    return (p.parent_path() / p.stem()).string() + text("-%d", k + 1) + p.extension().string();
-}
-
 Prescribed measured_like(const std::string& path, const Prescribed& data) {
     const ReadGarment read = read_garment(path);
     Prescribed other = measured_in(path, read);
@@ -57,23 +50,6 @@ Prescribed read_data(const RestJob& job, const ReadGarment& read) {
     else
         weigh(data, fabric_preset(job.fabric));
     return data;
-}
-
-double largest_stretch(const Prescribed& data, const Points& x) {
-    double most = 0;
-    for (int e = 0; e < data.edges.size(); ++e) {
-        const auto& [a, b] = data.edges.ends[e];
-        most = std::max(most, std::abs((x[b] - x[a]).norm() / data.length[e] - 1));
-    }
-    return most;
-}
-
-double largest_turn(const Prescribed& data, const Points& x) {
-    double most = 0;
-    const std::vector<double> angles = angles_of(data, x);
-    for (int e = 0; e < data.edges.size(); ++e)
-        if (data.edges.triangles_at(e) == 2) most = std::max(most, std::abs(angles[e] - data.angle[e]));
-    return most / degree;
 }
 
 Json states_json(const Prescribed& data, const std::vector<FoundShape>& states) {
@@ -120,6 +96,29 @@ std::vector<std::string> targets(const RestJob& job) {
 
 } // namespace
 
+std::string numbered_state(const std::string& path, int k) {
+    if (k == 0) return path;
+    const fs::path p(path);
+    return (p.parent_path() / p.stem()).string() + text("-%d", k + 1) + p.extension().string();
+}
+
+double largest_stretch(const Prescribed& data, const Points& x) {
+    double most = 0;
+    for (int e = 0; e < data.edges.size(); ++e) {
+        const auto& [a, b] = data.edges.ends[e];
+        most = std::max(most, std::abs((x[b] - x[a]).norm() / data.length[e] - 1));
+    }
+    return most;
+}
+
+double largest_turn(const Prescribed& data, const Points& x) {
+    double most = 0;
+    const std::vector<double> angles = angles_of(data, x);
+    for (int e = 0; e < data.edges.size(); ++e)
+        if (data.edges.triangles_at(e) == 2) most = std::max(most, std::abs(angles[e] - data.angle[e]));
+    return most / degree;
+}
+
 Prescribed measured_in(const std::string& path, const ReadGarment& read) {
     try {
         return measured(node_triangles(read.garment), read.x);
@@ -161,8 +160,8 @@ RestOutcome run_rest(const RestJob& job) {
 
     const std::size_t wanted = job.output.empty() ? 0 : job.all_states ? outcome.states.size() : 1;
     for (std::size_t k = 0; k < std::min(wanted, outcome.states.size()); ++k) {
-        write_moved(numbered(job.output, int(k)), job.shape, read, outcome.states[k].shape.x);
-        if (k > 0) outcome.written.push_back(numbered(job.output, int(k)));
+        write_moved(numbered_state(job.output, int(k)), job.shape, read, outcome.states[k].shape.x);
+        if (k > 0) outcome.written.push_back(numbered_state(job.output, int(k)));
     }
     if (!job.rest.empty() && !outcome.states.empty()) {
         Prescribed rest = data;

@@ -40,6 +40,13 @@ Prescribed measured_in(const std::string& path, const ReadGarment& read);
 /// The point at each number of the file, from 0; -1: none.
 std::vector<int> points_of_file(const ReadGarment& read);
 
+/// The file of state k, from 0: name.obj, name-2.obj, name-3.obj ...
+std::string numbered_state(const std::string& path, int k);
+
+/// By how much x is off the lengths told at most, as a share, and off the angles, in degrees.
+double largest_stretch(const Prescribed& data, const Points& x);
+double largest_turn(const Prescribed& data, const Points& x);
+
 /// Does the job. Throws InputError (a sentence) when a file is refused or a target cannot be written, before anything is. No
 /// states: from no start was a minimum reached.
 RestOutcome run_rest(const RestJob& job);

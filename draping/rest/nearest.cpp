@@ -186,11 +186,12 @@ NearestShape nearest_shape(const Prescribed& data, const Points& start, const Ne
     }
 }
 
-std::vector<FoundShape> nearest_shapes(const Prescribed& data, const Points& start, const NearestOptions& options) {
+std::vector<FoundShape> distinct_shapes(const Prescribed& data, const Points& start,
+                                        const std::function<NearestShape(const Points&)>& find) {
     std::vector<FoundShape> found;
     std::vector<std::vector<double>> angles;
     const auto look_from = [&](const Points& x) {
-        FoundShape f{nearest_shape(data, x, options), -1};
+        FoundShape f{find(x), -1};
         if (f.shape.end != NearestEnd::minimum) return;
         const std::vector<double> a = angles_of(data, f.shape.x);
         for (std::size_t k = 0; k < found.size(); ++k)
@@ -214,6 +215,10 @@ std::vector<FoundShape> nearest_shapes(const Prescribed& data, const Points& sta
             if (order[other] != k && alike(angles[k], angles[order[other]], -1, mirror_angle)) f.mirror = other;
     }
     return sorted;
+}
+
+std::vector<FoundShape> nearest_shapes(const Prescribed& data, const Points& start, const NearestOptions& options) {
+    return distinct_shapes(data, start, [&](const Points& x) { return nearest_shape(data, x, options); });
 }
 
 } // namespace toile

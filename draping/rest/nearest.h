@@ -7,6 +7,7 @@
 #include "draping/rest/prescribed.h"
 
 #include <cstdint>
+#include <functional>
 
 namespace toile {
 
@@ -38,8 +39,13 @@ struct FoundShape {
     int mirror = -1; ///< index of the shape whose angles are these with the other sign, roughly; -1: none found
 };
 
-/// The shapes found from `start`, from its mirror image, and from both shaken (seeded) across the surface, each shape once,
-/// lowest energy first.
+/// The minima that `find` comes to from `start`, from its mirror image, and from both shaken (seeded) across the surface, each
+/// once, lowest energy first. Those are one that differ by less than 1e-6 in energy and 1e-3 rad in all angles; the weights of
+/// `data` say how large an energy is.
+std::vector<FoundShape> distinct_shapes(const Prescribed& data, const Points& start,
+                                        const std::function<NearestShape(const Points&)>& find);
+
+/// The same with nearest_shape().
 std::vector<FoundShape> nearest_shapes(const Prescribed& data, const Points& start, const NearestOptions& options = {});
 
 /// Points moved across the surface by up to a share of the mean edge, the same way for the same seed.

@@ -60,7 +60,7 @@ double label_length(const Garment& garment, const std::string& label) {
     double sum = 0;
     for (const BorderLine& b : garment.borders)
         for (std::size_t k = 1; b.label == label && k < b.vertices.size(); ++k)
-            sum += (garment.uv[b.vertices[k]] - garment.uv[b.vertices[k - 1]]).norm();
+            sum += cut_length(garment, b.vertices[k - 1], b.vertices[k]);
     return sum;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/staging.h"
 
+#include "draping/rest/moulded.h"
 #include "sewing/arrange.h"
 
 #include <algorithm>
@@ -44,6 +45,28 @@ void mark_gathered(Garment& g, const std::vector<Elastic>& elastics) {
             if (on_elastic[v]) g.eased_triangle[t] = true;
 }
 
+/// Panels with a rest mesh take its shape; the others stay flat, to the last bit.
+void mould(const Pattern& pattern, Garment& g) {
+    const auto curved = [&](int p) { return pattern.panels[p].rest.has_value(); };
+    Points x;
+    std::size_t first = 0; // vertex of the panel
+    bool any = false;
+    for (std::size_t v = 0; v < g.uv.size(); ++v) {
+        const int p = g.panel_of_vertex[v];
+        if (p != g.panel_of_vertex[first]) first = v;
+        x.push_back(curved(p) ? pattern.panels[p].rest->mesh.points[v - first] : Vec3(g.uv[v].x(), g.uv[v].y(), 0));
+        any = any || curved(p);
+    }
+    if (!any) return;
+    const RestShape shape = moulded(g, x);
+    g.rest.curvature.assign(g.triangles.size(), Mat3::Zero());
+    for (std::size_t t = 0; t < g.triangles.size(); ++t) {
+        if (!curved(g.panel_of_triangle[t])) continue;
+        g.rest.edges[t] = shape.edges[t];
+        g.rest.curvature[t] = shape.curvature[t];
+    }
+}
+
 } // namespace
 
 Staging stage(const Pattern& pattern, const FlatPattern& flat) {
@@ -55,6 +78,7 @@ Staging stage(const Pattern& pattern, const FlatPattern& flat) {
         s.seam_names.push_back(seam.name);
     for (const FlatLevel& level : flat.levels) {
         s.levels.push_back({level.edge_length, sew(pattern, level), place(pattern, level)});
+        mould(pattern, s.levels.back().garment);
         mark_gathered(s.levels.back().garment, s.elastics);
     }
     return s;
@@ -92,8 +116,8 @@ std::vector<ElasticSegment> elastic_segments(const Staging& staging, const Garme
         const std::vector<int> line = vertices_along(garment, elastic.span);
         for (std::size_t k = 0; k + 1 < line.size(); ++k) {
             const int a = garment.node_of_vertex[line[k]], b = garment.node_of_vertex[line[k + 1]];
-            const double length = (garment.uv[line[k + 1]] - garment.uv[line[k]]).norm();
-            if (a != b) segments.push_back({a, b, elastic.ratio * length, elastic.stiffness});
+            if (a == b) continue;
+            segments.push_back({a, b, elastic.ratio * cut_length(garment, line[k], line[k + 1]), elastic.stiffness});
         }
     }
     return segments;

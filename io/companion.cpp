@@ -5,9 +5,12 @@
 #include "io/json.h"
 #include "io/read_edge.h"
 #include "io/read_fabric.h"
+#include "io/read_placement.h"
+#include "io/read_rest_mesh.h"
 #include "io/write_file.h"
 
 #include <algorithm>
+#include <climits>
 #include <filesystem>
 #include <sstream>
 
@@ -77,11 +80,46 @@ private:
             const auto& all = pattern_.panels;
             const auto at =
                 std::find_if(all.begin(), all.end(), [&n = name](const Panel& p) { return p.name == n; });
+            const JsonView panel = panels.below(value, "panel " + in_quotes(name));
+            if (value.is_object() && value.contains("rest_mesh")) {
+                if (at != all.end())
+                    throw InputError(panel.place() + " has an outline in the pattern and a \"rest_mesh\" here; one of them was expected");
+                read_moulded_panel(panel, name);
+                continue;
+            }
             if (at == all.end())
                 throw InputError(panels.place() + " names " + in_quotes(name) +
                                  ", which is no panel of the pattern");
-            read_panel(panels.below(value, "panel " + in_quotes(name)), pattern_.panels[at - all.begin()]);
+            read_panel(panel, pattern_.panels[at - all.begin()]);
         }
+    }
+
+    /// A panel that the pattern does not know, since it has no outline.
+    void read_moulded_panel(const JsonView& v, const std::string& name) {
+        v.expect_keys({"rest_mesh", "edges", "warp", "translation", "rotation", "fabric", "layer"});
+        Panel panel;
+        panel.name = name;
+        const std::string file = v.at("rest_mesh").string();
+        RestMeshOptions options;
+        if (v.has("warp")) options.warp = read_vector(v.at("warp"), 1);
+        each(v, "edges", [&](const JsonView& edge) {
+            edge.expect_keys({"from", "to", "label"});
+            options.edges.push_back({edge.at("from").integer(1, INT_MAX), edge.at("to").integer(1, INT_MAX)});
+            panel.outline.emplace_back();
+            if (edge.has("label")) panel.outline.back().label = edge.at("label").string();
+        });
+        panel.rest = read_rest_mesh((folder_ / file).string(), options);
+        double at = 0; // edges without a shape, one after the other
+        for (int e = 0; e < int(panel.outline.size()); ++e) {
+            panel.outline[e].start = {at, 0};
+            at += length_along(*panel.rest, e);
+            panel.outline[e].end = {at, 0};
+        }
+        if (v.has("translation")) panel.placement.translation = read_vector(v.at("translation"), edges_.metres);
+        if (v.has("rotation")) panel.placement.rotation = read_rotation(v.at("rotation"));
+        if (v.has("fabric")) panel.fabric = read_fabric(v.at("fabric"));
+        if (v.has("layer")) panel.layer = v.at("layer").integer(-max_layer, max_layer);
+        pattern_.panels.push_back(std::move(panel));
     }
 
     void read_panel(const JsonView& v, Panel& panel) {

@@ -4,10 +4,9 @@
 #include "io/companion.h"
 #include "io/json.h"
 #include "io/read_edge.h"
+#include "io/read_placement.h"
 #include "io/write_file.h"
 #include "patterns/curve.h"
-
-#include <Eigen/Geometry>
 
 #include <cmath>
 #include <filesystem>
@@ -48,24 +47,6 @@ Conventions read_conventions(const JsonView& root) {
     return c;
 }
 
-Vec3 read_translation(const JsonView& v, double metres) {
-    v.expect_array(3, 3);
-    Vec3 t;
-    for (int k = 0; k < 3; ++k)
-        t[k] = read_length(v.at(k, "coordinate"), metres);
-    return t;
-}
-
-/// Degrees about x, y, z; z is applied last.
-Mat3 read_rotation(const JsonView& v) {
-    v.expect_array(3, 3);
-    const auto radians = [&](int k) { return v.at(k, "angle").number(-1e6, 1e6) * (EIGEN_PI / 180); };
-    const Vec3 r(radians(0), radians(1), radians(2));
-    using Turn = Eigen::AngleAxisd;
-    return (Turn(r.z(), Vec3::UnitZ()) * Turn(r.y(), Vec3::UnitY()) * Turn(r.x(), Vec3::UnitX()))
-        .toRotationMatrix();
-}
-
 /// Moves the panel's origin to the mean of its vertices, as the files' own loader does: the translation takes
 /// up the shift before rotation.
 void centre(std::vector<Vec2>& vertices, Vec3& translation) {
@@ -103,7 +84,7 @@ Panel read_panel(const JsonView& v, const std::string& name, Reader& reader) {
     Panel panel;
     panel.name = name;
     panel.placement.rotation = read_rotation(v.at("rotation"));
-    panel.placement.translation = read_translation(v.at("translation"), as.metres);
+    panel.placement.translation = read_vector(v.at("translation"), as.metres);
     if (v.has("label")) panel.label = v.at("label").string();
 
     std::vector<Vec2> vertices = read_vertices(v.at("vertices"), as.metres);
@@ -161,7 +142,6 @@ Seam read_stitch(const JsonView& v, int number, const Reader& reader) {
 void read_panels(const JsonView& pattern, const std::string& file, Reader& reader) {
     const JsonView panels = pattern.at("panels");
     panels.expect_object();
-    if (panels.value().empty()) throw InputError(file + " has no panels");
     for (const auto& [name, value] : panels.value().items()) {
         const JsonView panel(value, file + ": panel " + in_quotes(name));
         panel.expect_object();
@@ -192,6 +172,10 @@ Pattern read(const std::string& text, const std::string& name) {
     return std::move(reader.pattern);
 }
 
+void refuse_empty(const Pattern& pattern, const std::string& file) {
+    if (pattern.panels.empty()) throw InputError(file + " has no panels");
+}
+
 constexpr std::uintmax_t max_bytes = JsonLimits{}.max_bytes;
 
 } // namespace
@@ -199,6 +183,7 @@ constexpr std::uintmax_t max_bytes = JsonLimits{}.max_bytes;
 Pattern read_pattern(std::istream& in, const std::string& name) {
     Pattern pattern = read(read_text(in, name, max_bytes), name);
     pattern.name = std::filesystem::path(name).stem().string();
+    refuse_empty(pattern, name);
     return pattern;
 }
 
@@ -207,6 +192,7 @@ Pattern read_pattern(const std::string& path) {
     pattern.name = std::filesystem::path(path).stem().string();
     const std::string companion = companion_path(path);
     if (std::filesystem::exists(companion)) read_companion(companion, pattern);
+    refuse_empty(pattern, path);
     return pattern;
 }
 

@@ -21,6 +21,8 @@ std::vector<BorderTrack> tracks_of(const Panel& panel, int p) {
             tracks.push_back({kind, p, loop, e, edges[e], length(edges[e]), {0.0, 1.0}, 0});
     };
     add(panel.outline, BorderKind::outline, 0);
+    for (BorderTrack& track : tracks)
+        if (panel.rest) track.cuts = fractions_along(*panel.rest, track.index);
     for (int h = 0; h < int(panel.holes.size()); ++h)
         add(panel.holes[h], BorderKind::hole, h);
     for (int l = 0; l < int(panel.lines.size()); ++l)
@@ -161,6 +163,21 @@ void match_all_seams(const Pattern& pattern, const TriangulateOptions& options, 
     throw std::runtime_error(
         "the seams of pattern '" + pattern.name +
         "' overlap so that every cut asks for another; seams on one edge must not overlap in a ring");
+}
+
+/// The triangles of a rest mesh stay as they are.
+void refuse_new_points(const Pattern& pattern, const BorderPlan& plan) {
+    for (const BorderTrack& track : plan.tracks) {
+        const Panel& panel = pattern.panels[track.panel];
+        if (!panel.rest) continue;
+        const std::vector<double> own = fractions_along(*panel.rest, track.index);
+        for (const double t : track.cuts)
+            if (std::find(own.begin(), own.end(), t) == own.end())
+                throw std::runtime_error("panel '" + panel.name + "' keeps the triangles of " + panel.rest->file + ", and edge " +
+                                         std::to_string(track.index) + " of it has no point at " + std::to_string(t) +
+                                         " of its length, where a seam, pin or elastic needs one; expected both sides of a seam "
+                                         "of two rest meshes to have their points at the same fractions");
+    }
 }
 
 /// Nearest place on an edge to p: (fraction, distance).
@@ -428,9 +445,13 @@ BorderPlan plan_borders(const Pattern& pattern, const TriangulateOptions& option
     cut_at_spans(pattern, plan);
     attach_lines(plan);
     match_all_seams(pattern, options, plan);
+    refuse_new_points(pattern, plan);
     make_intervals(plan);
     pair_intervals(pattern, plan);
     group_intervals(plan);
+    for (BorderGroup& group : plan.groups)
+        for (const int i : group.members)
+            if (pattern.panels[plan.tracks[plan.intervals[i].track].panel].rest) group.single = true;
     return plan;
 }
 
@@ -457,7 +478,7 @@ void choose_counts(BorderPlan& plan, const TriangulateOptions& options, const Le
             demand.least[level] = std::max(demand.least[level], least[level][g]);
         // Between the shortest and the longest member no side is off by more than the root of their ratio.
         demand.segments = std::sqrt(shortest * longest) * mean / options.edge_length;
-        choose(group, demand, plan.levels);
+        if (!group.single) choose(group, demand, plan.levels);
         const std::vector<double> at = equal_parts(dense, plan.count(g, plan.levels - 1));
         for (int i : group.members)
             sample_interval(plan, plan.intervals[i], dense.size() == 1, at);

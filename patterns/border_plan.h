@@ -40,6 +40,7 @@ struct BorderGroup {
     int halvings = 0;
     std::vector<int> members; ///< intervals, ascending
     bool symmetric = false;   ///< an interval is sewn to itself turned round
+    bool single = false;      ///< one segment on every level: between two points of a rest mesh
 };
 
 /// Two intervals sewn to each other; `backward`: the seam walks the interval from t1 to t0.
@@ -72,9 +73,10 @@ struct BorderPlan {
 /// Least number of segments wanted of a group at a level: wanted[level][group].
 using LeastCounts = std::vector<std::vector<int>>;
 
-/// Cuts all edges so that the intervals on both sides of every seam correspond one to one, and groups them.
-/// Counts are not chosen yet. Throws std::runtime_error with a sentence when a seam has no length or when
-/// overlapping seams ask for ever more cuts.
+/// Cuts all edges so that the intervals on both sides of every seam correspond one to one, and groups them. Edges of rest
+/// meshes are cut at all of their points, and nowhere else. Counts are not chosen yet. Throws std::runtime_error with a
+/// sentence when a seam has no length, when overlapping seams ask for ever more cuts, or one for a point that a rest mesh
+/// has not.
 BorderPlan plan_borders(const Pattern& pattern, const TriangulateOptions& options);
 
 /// Chooses every group's counts and samples its intervals: nearest to the target length on the finest level,

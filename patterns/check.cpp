@@ -141,6 +141,7 @@ private:
 
     void check_panel(const Panel& panel) {
         if (!check_placement(panel)) return;
+        if (panel.rest) return check_rest(panel);
         bool sound = true;
         const std::vector<Part> parts = parts_of(panel);
         for (const Part& part : parts)
@@ -162,6 +163,21 @@ private:
             error(capital(called(panel)) + " starts " + said(at.translation.norm()) +
                   " away from the origin; check the units");
         return true;
+    }
+
+    /// Its triangles were looked at when it was read.
+    void check_rest(const Panel& panel) {
+        Vec3 low = panel.rest->mesh.points[0], high = low;
+        for (const Vec3& p : panel.rest->mesh.points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+        check_size(panel, (high - low).maxCoeff());
+    }
+
+    bool check_size(const Panel& panel, double size) {
+        largest_ = std::max(largest_, size);
+        if (size <= options_.max_extent) return true;
+        error(capital(called(panel)) + " measures " + said(size) + "; at most " + said(options_.max_extent) +
+              " was expected: check the units");
+        return false;
     }
 
     /// False when the geometry of the part cannot be looked at any further.
@@ -214,12 +230,7 @@ private:
         for (const Part& part : parts)
             for (const Edge& e : *part.edges)
                 extent.add(e);
-        const double size = extent.size();
-        largest_ = std::max(largest_, size);
-        if (size <= options_.max_extent) return true;
-        error(capital(called(panel)) + " measures " + said(size) + "; at most " + said(options_.max_extent) +
-              " was expected: check the units");
-        return false;
+        return check_size(panel, extent.size());
     }
 
     bool check_area(const Panel& panel) {
@@ -427,8 +438,12 @@ Points side_points(const Pattern& pattern, const SeamSide& side, int n) {
         const double share = lengths[k] > 0 ? std::min(1.0, (at - before) / lengths[k]) : 0;
         const double t = s.t0 + (s.t1 - s.t0) * share;
         const Panel& panel = pattern.panels[s.panel];
-        const Vec2 p = sample(panel.outline[s.edge], t, t, 1).front();
-        points.push_back(panel.placement.rotation * Vec3(p.x(), p.y(), 0) + panel.placement.translation);
+        Vec3 p = Vec3::Zero();
+        if (panel.rest)
+            p = place_along(*panel.rest, s.edge, t);
+        else
+            p.head<2>() = sample(panel.outline[s.edge], t, t, 1).front();
+        points.push_back(panel.placement.rotation * p + panel.placement.translation);
     }
     return points;
 }

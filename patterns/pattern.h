@@ -4,9 +4,9 @@
 // What the designer drew: panels of curved edges, the seams between them, and where each panel starts out
 // around the body. Metres and radians; panel coordinates are x to the right, y up, as in the file.
 
-#include "geometry/types.h"
+#include "patterns/rest_mesh.h"
 
-#include <string>
+#include <optional>
 #include <variant>
 
 namespace toile {
@@ -52,6 +52,9 @@ struct Panel {
     std::string fabric;   ///< preset or name from the companion file; empty: the garment's
     double grain = EIGEN_PI / 2; ///< direction of the warp, rad from the panel's x axis; default: the panel's y
     int layer = 0;        ///< 0 lies next to the body, larger lies outside
+    /// Cloth that is not flat at rest. The outline then has edges of the same number, label and length, which are straight and
+    /// have no shape; it is empty for a closed surface. There are no holes and no lines.
+    std::optional<RestMesh> rest;
 };
 
 /// The part [t0, t1] of an outline's edge, as fractions of its arc length, walked from t0 to t1

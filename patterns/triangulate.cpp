@@ -121,6 +121,16 @@ private:
     std::vector<std::vector<int>> point_at_cut_; ///< per track and cut; -1: not made yet
 };
 
+/// All points of a rest mesh count as points of its panel's border, by their own numbers.
+void border_of_rest(const BorderPlan& plan, int p, const RestMesh& rest, LevelBorders& out) {
+    out.panels[p].points = rest.flat;
+    for (int k = plan.first_track[p]; k < plan.first_track[p + 1]; ++k) {
+        const std::vector<int>& points = rest.edges[plan.tracks[k].index];
+        for (std::size_t c = 0; c + 1 < points.size(); ++c)
+            out.of_interval[plan.tracks[k].first_interval + c] = {points[c], points[c + 1]};
+    }
+}
+
 LevelBorders make_borders(const Pattern& pattern, const BorderPlan& plan, const TriangulateOptions& options,
                           int level) {
     LevelBorders out;
@@ -129,7 +139,10 @@ LevelBorders make_borders(const Pattern& pattern, const BorderPlan& plan, const 
     out.of_interval.resize(plan.intervals.size());
     BorderBuilder builder(plan, level, out);
     for (int p = 0; p < int(pattern.panels.size()); ++p)
-        builder.panel(p);
+        if (const auto& rest = pattern.panels[p].rest)
+            border_of_rest(plan, p, *rest, out);
+        else
+            builder.panel(p);
     return out;
 }
 
@@ -302,6 +315,15 @@ void split_chords(const BorderPlan& plan, const LevelBorders& borders, std::vect
 std::vector<PlanarMesh> mesh_panels(const Pattern& pattern, const LevelBorders& borders,
                                     const TriangulateOptions& options) {
     std::vector<PlanarMesh> meshes(borders.panels.size());
+    const auto mesh_of = [&](const Panel& panel, const PanelBorder& border, const SizeAt& size) {
+        if (!panel.rest)
+            return options.grain_lattice ? mesh_panel_along_grain(border, borders.edge_length, panel.grain, options.smoothing)
+                                         : mesh_panel(border, borders.edge_length, size, options.smoothing);
+        PlanarMesh own;
+        own.points = panel.rest->flat;
+        own.triangles = panel.rest->mesh.triangles;
+        return own;
+    };
     std::vector<std::string> errors(meshes.size());
     parallel_for(int(meshes.size()), 1, [&](int begin, int end) {
         for (int p = begin; p < end; ++p) {
@@ -309,10 +331,7 @@ std::vector<PlanarMesh> mesh_panels(const Pattern& pattern, const LevelBorders& 
             if (options.size)
                 size = [&, p](const Vec2& at) { return std::clamp(options.size(p, at), 1e-3, 1.0); };
             try {
-                meshes[p] = options.grain_lattice ? mesh_panel_along_grain(borders.panels[p], borders.edge_length,
-                                                                           pattern.panels[p].grain, options.smoothing)
-                                                  : mesh_panel(borders.panels[p], borders.edge_length, size,
-                                                               options.smoothing);
+                meshes[p] = mesh_of(pattern.panels[p], borders.panels[p], size);
             } catch (const std::exception& e) {
                 errors[p] = e.what();
             }
@@ -400,7 +419,7 @@ FlatLevel assemble(const Pattern& pattern, const BorderPlan& plan, const LevelBo
     level.edge_length = borders.edge_length;
     std::vector<int> offset{0};
     for (int p = 0; p < int(meshes.size()); ++p) {
-        const bool clockwise = signed_area(pattern.panels[p].outline) < 0;
+        const bool clockwise = !pattern.panels[p].rest && signed_area(pattern.panels[p].outline) < 0;
         level.points.insert(level.points.end(), meshes[p].points.begin(), meshes[p].points.end());
         level.panel_of_point.insert(level.panel_of_point.end(), meshes[p].points.size(), p);
         for (const Triangle& t : meshes[p].triangles) {
@@ -421,7 +440,7 @@ FlatLevel assemble(const Pattern& pattern, const BorderPlan& plan, const LevelBo
 
 /// Every fine vertex from the coarse level: border points from their edge, so that both sides of a seam move
 /// as one; inner points from the coarse triangle they lie in.
-std::vector<Interpolation> prolong(const BorderPlan& plan, int level, const LevelBorders& coarse_borders,
+std::vector<Interpolation> prolong(const Pattern& pattern, const BorderPlan& plan, int level, const LevelBorders& coarse_borders,
                                    const FlatLevel& coarse, const LevelBorders& fine_borders,
                                    const FlatLevel& fine) {
     const int panels = int(coarse_borders.panels.size());
@@ -431,6 +450,11 @@ std::vector<Interpolation> prolong(const BorderPlan& plan, int level, const Leve
     };
     std::vector<Interpolation> out(fine.points.size());
     for (int p = 0; p < panels; ++p) {
+        if (pattern.panels[p].rest) { // the same points on every level
+            for (int to = first_point(fine, p), from = first_point(coarse, p); to < first_point(fine, p + 1); ++to, ++from)
+                out[to] = {{from, from, from}, {1, 0, 0}};
+            continue;
+        }
         const int begin = first_point(fine, p) + int(fine_borders.panels[p].points.size()),
                   end = first_point(fine, p + 1);
         const std::vector<Vec2> inner(fine.points.begin() + begin, fine.points.begin() + end);
@@ -504,7 +528,7 @@ FlatPattern triangulate(const Pattern& pattern, const TriangulateOptions& option
     }
     for (int l = 0; l + 1 < plan.levels; ++l)
         flat.prolongation.push_back(
-            prolong(plan, l, borders[l], flat.levels[l], borders[l + 1], flat.levels[l + 1]));
+            prolong(pattern, plan, l, borders[l], flat.levels[l], borders[l + 1], flat.levels[l + 1]));
     return flat;
 }
 

@@ -4,6 +4,7 @@
 #include "geometry/disjoint_sets.h"
 #include "patterns/curve.h"
 #include "patterns/plane.h"
+#include "sewing/mesh_grain.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,9 +24,19 @@ double side_length(const Pattern& pattern, const SeamSide& side) {
     return sum;
 }
 
-RestShape rest_of(const Garment& g) {
+/// The edges of rest meshes are chords here; moulded() makes arcs of them.
+RestShape rest_of(const Pattern& pattern, const Garment& g) {
     RestShape rest;
-    for (const Triangle& t : g.triangles) {
+    int first = 0; // triangle of the panel
+    for (int k = 0; k < int(g.triangles.size()); ++k) {
+        const Triangle& t = g.triangles[k];
+        if (g.panel_of_triangle[k] != g.panel_of_triangle[first]) first = k;
+        if (const auto& own = pattern.panels[g.panel_of_triangle[k]].rest) {
+            const Triangle& n = own->mesh.triangles[k - first];
+            const Points& x = own->mesh.points;
+            rest.edges.push_back(edges_in_grain(x[n[1]] - x[n[0]], x[n[2]] - x[n[0]], own->warp[k - first]));
+            continue;
+        }
         Mat2 e;
         e << g.uv[t[1]] - g.uv[t[0]], g.uv[t[2]] - g.uv[t[0]];
         rest.edges.push_back(e);
@@ -46,7 +57,7 @@ void fold_lines(const Pattern& pattern, const FlatLevel& flat, Garment& g) {
 }
 
 /// Half of every sewn segment goes to the stitch at each of its ends.
-std::vector<Stitch> stitches_of(const FlatLevel& flat, int seam) {
+std::vector<Stitch> stitches_of(const FlatLevel& flat, const Garment& g, int seam) {
     std::vector<Stitch> out;
     std::map<std::array<int, 2>, int> number;
     for (const auto& [a, b] : flat.stitches[seam]) {
@@ -54,8 +65,7 @@ std::vector<Stitch> stitches_of(const FlatLevel& flat, int seam) {
         out.push_back({a, {b, b}, 0, seam, 0});
     }
     for (const SewnSegment& s : flat.sewn[seam]) {
-        const double half = 0.25 * ((flat.points[s.a[1]] - flat.points[s.a[0]]).norm() +
-                                    (flat.points[s.b[1]] - flat.points[s.b[0]]).norm());
+        const double half = 0.25 * (cut_length(g, s.a[0], s.a[1]) + cut_length(g, s.b[0], s.b[1]));
         for (int k = 0; k < 2; ++k) {
             const auto at = number.find({s.a[k], s.b[k]});
             if (at != number.end()) out[at->second].length += half;
@@ -117,6 +127,18 @@ void refuse_collapse(const Garment& g) {
 
 double rest_area(const Mat2& edges) { return 0.5 * std::abs(edges.determinant()); }
 
+double cut_length(const Garment& garment, int a, int b) {
+    const int e = edge_between(garment.edges, garment.node_of_vertex[a], garment.node_of_vertex[b]);
+    for (int k = garment.edges.first[e]; k < garment.edges.first[e + 1]; ++k) {
+        const int t = garment.edges.incident[k];
+        for (int corner = 0; corner < 3; ++corner) {
+            const int p = garment.triangles[t][(corner + 1) % 3], q = garment.triangles[t][(corner + 2) % 3];
+            if (std::minmax(p, q) == std::minmax(a, b)) return rest_edge(garment.rest.edges[t], corner).norm();
+        }
+    }
+    throw std::invalid_argument("vertices " + std::to_string(a) + " and " + std::to_string(b) + " share no edge of the cut cloth");
+}
+
 std::vector<int> vertices_along(const Garment& garment, const EdgeSpan& span) {
     const double low = std::min(span.t0, span.t1) - 1e-9, high = std::max(span.t0, span.t1) + 1e-9;
     std::vector<int> out;
@@ -145,10 +167,10 @@ Garment sew(const Pattern& pattern, const FlatLevel& flat) {
     g.node_of_vertex.resize(g.uv.size());
     std::iota(g.node_of_vertex.begin(), g.node_of_vertex.end(), 0);
     g.edges = make_edges(g.triangles, g.node_count);
-    g.rest = rest_of(g);
+    g.rest = rest_of(pattern, g);
     fold_lines(pattern, flat, g);
     for (int s = 0; s < int(flat.stitches.size()); ++s) {
-        const std::vector<Stitch> stitches = stitches_of(flat, s);
+        const std::vector<Stitch> stitches = stitches_of(flat, g, s);
         g.stitches.insert(g.stitches.end(), stitches.begin(), stitches.end());
     }
     mark_seams(pattern, flat, g);

@@ -85,6 +85,9 @@ inline bool is_crease(const Garment& garment, int edge) { return garment.rest.an
 /// exactly in vertices; of others, the vertices inside are returned.
 std::vector<int> vertices_along(const Garment& garment, const EdgeSpan& span);
 
+/// The length of the edge between two vertices of one panel by the rest shape, m. Throws std::invalid_argument when there is none.
+double cut_length(const Garment& garment, int a, int b);
+
 /// The garment of one level, every seam open: one node per vertex, stitches across the seams.
 Garment sew(const Pattern& pattern, const FlatLevel& flat);
 

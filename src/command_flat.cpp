@@ -2,6 +2,7 @@
 #include "src/command_line.h"
 
 #include "io/flat_svg.h"
+#include "io/json.h"
 #include "io/read_pattern.h"
 #include "src/drape_input.h"
 
@@ -35,7 +36,10 @@ void add_flat(CLI::App& app, Command& chosen) {
             if (is_staged(a->pattern))
                 throw InputError(a->pattern + " is a staged mesh; a pattern of panels with edges was expected, a mesh "
                                               "shows its own flat pattern in any viewer of texture coordinates");
-            write_flat_svg(a->output, read_pattern(a->pattern));
+            const Pattern pattern = read_pattern(a->pattern);
+            if (const Panel* panel = moulded_panel(pattern))
+                throw InputError(a->pattern + ": panel " + in_quotes(panel->name) + " has a rest mesh and no outline that could be drawn");
+            write_flat_svg(a->output, pattern);
             return exit_made;
         };
     });

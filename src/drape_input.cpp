@@ -23,7 +23,9 @@ void refuse_too_fine(const Pattern& pattern, double edge_length, double max_memo
     double area = 0;
     for (const Panel& panel : pattern.panels)
         area += std::abs(signed_area(panel.outline));
-    const double triangles = area / (std::sqrt(3.0) / 4 * edge_length * edge_length);
+    double triangles = area / (std::sqrt(3.0) / 4 * edge_length * edge_length);
+    for (const Panel& panel : pattern.panels)
+        if (panel.rest) triangles += double(panel.rest->mesh.triangles.size());
     if (triangles > max_triangles)
         throw InputError("at this edge length the pattern has about " +
                          std::to_string(long(triangles / 1e6)) + " million triangles, more than the " +
@@ -44,7 +46,7 @@ void take_fabrics(const Pattern& pattern, const std::string& common, DrapeInput&
         } catch (const std::invalid_argument& error) {
             throw InputError("panel " + panel.name + ": " + error.what());
         }
-        if (is_fabric_file(name)) input.fabric_files.push_back(name);
+        if (is_fabric_file(name)) input.files.push_back(name);
     }
     input.fabric = fabric_called(common).name;
 }
@@ -107,6 +109,12 @@ Pattern sound_pattern(const std::string& path, std::vector<std::string>& warning
     throw InputError(path + ": " + errors[0] + more);
 }
 
+const Panel* moulded_panel(const Pattern& pattern) {
+    for (const Panel& panel : pattern.panels)
+        if (panel.rest) return &panel;
+    return nullptr;
+}
+
 DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length, double max_memory,
                     bool grain_lattice) {
     refuse_too_fine(pattern, edge_length, max_memory);
@@ -116,7 +124,17 @@ DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double ed
     options.grain_lattice = grain_lattice;
     DrapeInput input;
     take_fabrics(pattern, common_fabric(pattern, fabric), input);
-    input.staging = stage(pattern, triangulate(pattern, options));
+    for (const Panel& panel : pattern.panels)
+        if (panel.rest) input.files.push_back(panel.rest->file);
+    if (const Panel* panel = moulded_panel(pattern); panel && grain_lattice)
+        throw InputError("panel " + panel->name + " keeps the triangles of " + panel->rest->file +
+                         ", which do not lie along warp and weft as those of inextensible cloth must; another --method was expected");
+    try {
+        input.staging = stage(pattern, triangulate(pattern, options));
+    } catch (const std::runtime_error& error) {
+        if (!moulded_panel(pattern)) throw;
+        throw InputError(error.what()); // check() cannot know where seams will ask for points
+    }
     return input;
 }
 

@@ -17,7 +17,7 @@ struct DrapeInput {
     Staging staging;
     PanelFabrics fabrics; ///< one per panel
     std::string fabric;   ///< name of the garment's
-    std::vector<std::string> fabric_files; ///< that fabrics came from, by panel
+    std::vector<std::string> files; ///< that fabrics and rest meshes came from, by panel
     std::vector<std::string> notes, warnings;
 };
 
@@ -27,8 +27,11 @@ bool is_staged(const std::string& path);
 /// A pattern that check() finds no error in. Its warnings are added. Throws InputError with the first error.
 Pattern sound_pattern(const std::string& path, std::vector<std::string>& warnings);
 
-/// The pattern meshed at `edge_length` metres, along the grain if so asked. Throws InputError when that is too fine, or the meshes alone would
-/// take the process beyond `max_memory` bytes.
+/// The first panel that is not flat at rest; null: none.
+const Panel* moulded_panel(const Pattern& pattern);
+
+/// The pattern meshed at `edge_length` metres, along the grain if so asked. Throws InputError when that is too fine, the meshes alone would
+/// take the process beyond `max_memory` bytes, or a rest mesh, which has its own triangles, cannot follow.
 DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length, double max_memory = 1e18,
                     bool grain_lattice = false);
 

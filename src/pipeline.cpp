@@ -85,7 +85,7 @@ std::vector<std::string> targets(const DrapeJob& job) {
 }
 
 /// Everything that shapes the result.
-std::string input_hash(const DrapeJob& job, const std::vector<std::string>& fabric_files) {
+std::string input_hash(const DrapeJob& job, const std::vector<std::string>& files) {
     Hash hash;
     const auto add_file = [&](const std::string& path) {
         if (!path.empty() && fs::exists(path)) hash.add(read_file(path, max_file));
@@ -97,7 +97,7 @@ std::string input_hash(const DrapeJob& job, const std::vector<std::string>& fabr
     add_file(job.from);
     for (const std::string& frame : job.avatar_sequence) add_file(frame);
     hash.add(job.fabric);
-    for (const std::string& file : fabric_files) add_file(file);
+    for (const std::string& file : files) add_file(file);
     for (const std::string& word : job.drape.hold)
         hash.add("hold " + word + '\n');
     hash.add(std::string("contact ") + to_string(response_of(job.drape)) + '\n');
@@ -128,6 +128,16 @@ Points earlier_positions(const std::string& path, const Staging& staging, std::v
     const ReadGarment earlier = read_garment(path);
     notes.insert(notes.end(), earlier.notes.begin(), earlier.notes.end());
     return start_from(earlier, close_seams(staging.levels.back().garment), path);
+}
+
+/// What a panel that is not flat at rest cannot have.
+void note_moulded(const DrapeJob& job, const Panel& panel, std::vector<std::string>& warnings) {
+    if (!job.from.empty())
+        throw InputError(job.from + " cannot be started from: panel " + panel.name + " has a rest mesh, and a drape is taken up by the "
+                                    "places of flat panels");
+    if (job.drape.method != Method::equilibrium)
+        warnings.push_back("panel " + panel.name + " is not flat at rest; " + to_string(job.drape.method) +
+                           " takes the lengths of its rest mesh alone, and bends it from flat");
 }
 
 /// A misspelt word of --hold would let a garment fall in silence.
@@ -299,9 +309,10 @@ DrapeOutcome run_job(const DrapeJob& job) {
                                  ? read_staged_input(job.pattern, job.fabric, body)
                                  : input_of(pattern, job.fabric, job.edge_length, job.drape.max_memory,
                                             needs_grain_lattice(job.drape.method));
-    context.input_hash = input_hash(job, input.fabric_files);
+    if (const Panel* panel = moulded_panel(pattern)) note_moulded(job, *panel, context.warnings);
+    context.input_hash = input_hash(job, input.files);
     context.decisions.insert(context.decisions.end(), input.notes.begin(), input.notes.end());
-    refuse_targets(input.fabric_files, targets(job));
+    refuse_targets(input.files, targets(job));
     refuse_unknown_labels(job, input.staging);
     refuse_too_many_frames(job, input.staging.levels.back().garment);
     watch.lap(context, is_staged(job.pattern) ? "read" : "triangulate");

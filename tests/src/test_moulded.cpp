@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/read_garment.h"
-#include "geometry/text.h"
 #include "io/write_file.h"
 #include "tests/src/run.h"
 #include "tests/support/curved_shells.h"
+#include "tests/support/obj_text.h"
 #include "tests/support/temp_folder.h"
 
 #include <catch2/catch.hpp>
@@ -22,11 +22,8 @@ constexpr double threshold = 5.087275721655189; // of shell theory, without late
 
 std::string cap_file(const TempFolder& folder) {
     const Cloth c = cap(rings, 1);
-    std::string text;
-    for (const Vec3& p : c.x) text += toile::text("v %.17g %.17g %.17g\n", p.x(), p.y(), p.z());
-    for (const Triangle& t : c.garment.triangles) text += toile::text("f %d %d %d\n", t[0] + 1, t[1] + 1, t[2] + 1);
     const std::string file = folder / "cap.obj";
-    write_file(file, text);
+    write_file(file, obj_text({c.x, c.garment.triangles}));
     return file;
 }
 

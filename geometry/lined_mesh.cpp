@@ -14,6 +14,7 @@ namespace {
 // Shares of an edge, or weights in a triangle.
 constexpr double at_corner = 0.25; // nearer to a corner that may move, a line takes it along
 constexpr double at_held = 0.02;   // nearer to one that may not, it goes through that
+constexpr double opposite = 0.5;   // sum of two normals that are about 150 degrees apart
 
 bool has(const Triangle& t, int point) { return t[0] == point || t[1] == point || t[2] == point; }
 
@@ -58,12 +59,23 @@ void LinedMesh::mark(int a, int b, int line) {
     hold(b);
 }
 
+/// Whether a corner can go `way` metres along the surface without turning over a triangle.
+bool LinedMesh::may_move(int point, double way) const {
+    if (held_[point]) return false;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (const int t : around_[point])
+        for (const int p : mesh_.triangles[t])
+            if (p != point) shortest = std::min(shortest, (mesh_.points[p] - mesh_.points[point]).norm());
+    return way < at_corner * shortest;
+}
+
 /// The point where a line crosses an edge.
 int LinedMesh::cross_edge(int a, int b, double share) {
     if (share > 0.5) return cross_edge(b, a, 1 - share);
     if (share < at_held) return a;
-    if (share > at_corner || held_[a]) return split_edge(a, b, share);
-    mesh_.points[a] += share * (mesh_.points[b] - mesh_.points[a]);
+    const Vec3 way = share * (mesh_.points[b] - mesh_.points[a]);
+    if (!may_move(a, way.norm())) return split_edge(a, b, share);
+    mesh_.points[a] += way;
     return a;
 }
 
@@ -122,7 +134,7 @@ int LinedMesh::point_near(const Vec3& p, double reach) {
     for (int k = 0; k < 3; ++k) on += weight(k) * mesh_.points[t[k]];
     int point = -1;
     for (int k = 0; k < 3 && point < 0; ++k)
-        if (weight(k) > 1 - (held_[t[k]] ? at_held : at_corner)) point = t[k];
+        if (weight(k) > 1 - at_held || may_move(t[k], (on - mesh_.points[t[k]]).norm())) point = t[k];
     for (int k = 0; k < 3 && point < 0; ++k)
         if (weight(k) < at_corner) point = split_edge(t[(k + 1) % 3], t[(k + 2) % 3], weight(k + 2) / (weight(k + 1) + weight(k + 2)));
     if (point < 0) point = split_face(at, on);
@@ -142,8 +154,8 @@ Vec3 LinedMesh::normal_at(int point) const {
 
 bool LinedMesh::join(int a, int b, int line) {
     const Vec3 origin = mesh_.points[a], goal = mesh_.points[b] - origin;
-    const Vec3 across = goal.cross(normal_at(a) + normal_at(b));
-    if (!(across.norm() > 0)) return false;
+    const Vec3 up = normal_at(a) + normal_at(b), across = goal.cross(up);
+    if (!(across.norm() > 0) || up.norm() < opposite) return false;
     const auto height = [&](int p) { return across.dot(mesh_.points[p] - origin); };
     const std::size_t most = mesh_.triangles.size();
     int here = a;
@@ -187,8 +199,8 @@ bool LinedMesh::cut_by_plane(const Vec3& on, const Vec3& normal, const Eigen::Al
     Points moved = mesh_.points; // corners near the line, each the shortest way to it along an edge
     each_crossing([&](int a, int b, double s) {
         if (s > 0.5) std::swap(a, b), s = 1 - s;
-        if (s > (held_[a] ? at_held : at_corner)) return;
         const Vec3 way = s * (mesh_.points[b] - mesh_.points[a]);
+        if (s > at_held && !may_move(a, way.norm())) return;
         if (drawn[a] && way.norm() >= (moved[a] - mesh_.points[a]).norm()) return;
         drawn[a] = 1;
         if (!held_[a]) moved[a] = mesh_.points[a] + way;

@@ -24,7 +24,7 @@ public:
     int point_near(const Vec3& p, double reach = 0);
 
     /// Draws a line from point a to b: the section by the plane that holds both and the mean of the normals there. False
-    /// when it does not come to b, since the surface ends or turns away by more than 90 degrees.
+    /// when it does not come to b, since the surface ends or turns away by more than 90 degrees, and for points on opposite sides.
     bool join(int a, int b, int line);
 
     /// Draws where the plane through `on` across `normal` meets the surface inside the box. False: nowhere.
@@ -34,6 +34,7 @@ private:
     int cross_edge(int a, int b, double share);
     int split_edge(int a, int b, double share);
     void hold(int point) { held_[point] = 1; }
+    bool may_move(int point, double way) const;
     int split_face(int t, const Vec3& p);
     void replace(int t, const Triangle& by);
     int add(const Triangle& t);

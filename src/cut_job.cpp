@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "src/cut_job.h"
 
-#include "draping/rest/consistency.h"
 #include "geometry/offset_surface.h"
 #include "geometry/text.h"
 #include "io/preview.h"
@@ -16,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace toile {
@@ -46,10 +46,22 @@ std::vector<double> strains_of(const CutPiece& piece) {
     return all;
 }
 
+/// 2 pi less the corners at a point, rad; 0 on the border.
+std::vector<double> angle_defects(const TriMesh& mesh) {
+    std::vector<double> defects(mesh.points.size(), 2 * EIGEN_PI);
+    for (const Triangle& t : mesh.triangles)
+        for (int k = 0; k < 3; ++k) {
+            const Vec3 a = mesh.points[t[(k + 1) % 3]] - mesh.points[t[k]], b = mesh.points[t[(k + 2) % 3]] - mesh.points[t[k]];
+            defects[t[k]] -= std::atan2(a.cross(b).norm(), a.dot(b));
+        }
+    for (const int p : border_loop(mesh)) defects[p] = 0;
+    return defects;
+}
+
 /// All curvature of the inside, what a dart of that angle with its point in the middle of it would take away, from the nearest
 /// place of the border; negative curvature asks for a gusset instead.
 Json dart_json(const CutPiece& piece) {
-    const std::vector<double> defects = angle_defects(measured(piece.mesh.triangles, piece.mesh.points));
+    const std::vector<double> defects = angle_defects(piece.mesh);
     const double all = std::accumulate(defects.begin(), defects.end(), 0.0);
     double weight = 0;
     Vec3 middle = Vec3::Zero();

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "sewing/cut_pattern.h"
+
+#include "geometry/edges.h"
+#include "patterns/check.h"
+#include "tests/support/surfaces.h"
+
+#include <catch2/catch.hpp>
+
+using namespace toile;
+using namespace toile::test;
+using Catch::Matchers::Contains;
+
+namespace {
+
+double most_strain(const CutPiece& piece) {
+    double most = 0;
+    for (int t = 0; t < int(piece.mesh.triangles.size()); ++t)
+        most = std::max(most, laid_strain(piece.mesh, piece.flat.points, t).cwiseAbs().maxCoeff());
+    return most;
+}
+
+double area(const TriMesh& mesh) {
+    double sum = 0;
+    for (const auto& [a, b, c] : mesh.triangles) sum += (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]).norm() / 2;
+    return sum;
+}
+
+} // namespace
+
+TEST_CASE("a cylinder and a cone cut along a line lie flat without strain, and are sewn to themselves where they were cut") {
+    for (const double narrower : {0.0, 0.4}) { // at the top
+        TriMesh mesh = tube(0.1, 0.3, 24, 9);
+        for (Vec3& p : mesh.points) p.x() *= 1 - narrower * p.y() / 0.3, p.z() *= 1 - narrower * p.y() / 0.3;
+        LinedMesh surface(mesh);
+        REQUIRE(surface.join(0, 24 * 9, 0));
+        const std::vector<CutPiece> pieces = cut_out(surface, {{"all", Vec3(0, 0.15, 0)}});
+        REQUIRE(pieces.size() == 1);
+        CHECK(pieces[0].flat.settled);
+        CHECK(most_strain(pieces[0]) < 1e-6);
+        const Pattern pattern = pattern_of(surface, pieces, {"back"});
+        CHECK_FALSE(has_error(check(pattern)));
+        REQUIRE(pattern.seams.size() == 1);
+        const SeamLengths l = seam_lengths(pattern, pattern.seams[0]);
+        CHECK(l.a == Approx(std::hypot(0.3, 0.1 * narrower)).epsilon(1e-9));
+        CHECK(l.b == Approx(l.a).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("a cap of a sphere keeps the strain of the shallow shell that is pressed flat") {
+    const double angle = 0.3; // rad; classical: in the middle angle^2 / 16 both ways, round the rim -angle^2 / 8
+    const TriMesh sphere = ellipsoid(Vec3(1, 1, 1), 120, 84);
+    LinedMesh surface(sphere);
+    REQUIRE(surface.cut_by_plane(Vec3(0, std::cos(angle), 0), Vec3::UnitY(), {Vec3::Constant(-2), Vec3::Constant(2)}, 0));
+    FlattenOptions free;
+    free.border_weight = 0;
+    const std::vector<CutPiece> pieces = cut_out(surface, {{"cap", Vec3(0, 1, 0)}}, free);
+    const CutPiece& cap = pieces[0];
+    CHECK(area(cap.mesh) == Approx(2 * EIGEN_PI * (1 - std::cos(angle))).epsilon(2e-3));
+    double middle = 0, rim = 0;
+    for (int t = 0; t < int(cap.mesh.triangles.size()); ++t) {
+        Vec3 at = Vec3::Zero();
+        for (const int p : cap.mesh.triangles[t]) at += cap.mesh.points[p] / 3;
+        const Vec2 strain = laid_strain(cap.mesh, cap.flat.points, t);
+        if (std::hypot(at.x(), at.z()) < 0.05) middle = std::max(middle, strain[0]);
+        rim = std::min(rim, strain[1]);
+    }
+    CHECK(middle == Approx(angle * angle / 16).epsilon(0.1));
+    CHECK(rim == Approx(-angle * angle / 8).epsilon(0.1));
+}
+
+TEST_CASE("lines drawn on a surface part it, keep it closed and leave no slivers") {
+    const TriMesh sphere = ellipsoid(Vec3(1, 1, 1), 40, 25);
+    LinedMesh surface(sphere);
+    REQUIRE(surface.cut_by_plane(Vec3(0, 0.3, 0), Vec3(0.2, 1, 0.1).normalized(), {Vec3::Constant(-2), Vec3::Constant(2)}, 0));
+    const int a = surface.point_near(Vec3(1, 0.3, 0), 0.15), b = surface.point_near(Vec3(0.6, -0.7, 0.2));
+    CHECK(surface.lines().size() > 30);
+    REQUIRE(surface.join(a, b, 1));
+    const TriMesh& mesh = surface.mesh();
+    const EdgeTable edges = make_edges(mesh.triangles, int(mesh.points.size()));
+    for (int e = 0; e < edges.size(); ++e) CHECK(edges.triangles_at(e) == 2);
+    CHECK(int(mesh.points.size()) - edges.size() + int(mesh.triangles.size()) == 2);
+    CHECK(area(mesh) == Approx(area(sphere)).epsilon(5e-3));
+    for (const auto& [ends, line] : surface.lines())
+        if (line == 0)
+            for (const int p : ends) CHECK(std::abs(Vec3(0.2, 1, 0.1).normalized().dot(mesh.points[p] - Vec3(0, 0.3, 0))) < 1e-9);
+    for (const auto& [p, q, r] : mesh.triangles) {
+        const double height = (mesh.points[q] - mesh.points[p]).cross(mesh.points[r] - mesh.points[p]).norm();
+        const double longest = std::max({(mesh.points[q] - mesh.points[p]).norm(), (mesh.points[r] - mesh.points[q]).norm(), (mesh.points[p] - mesh.points[r]).norm()});
+        CHECK(height > 0.02 * longest * longest);
+    }
+    CHECK_FALSE(surface.cut_by_plane(Vec3(0, 3, 0), Vec3::UnitY(), {Vec3::Constant(-2), Vec3::Constant(2)}, 2));
+}
+
+TEST_CASE("pieces that cannot be panels are refused by name") {
+    const LinedMesh whole(ellipsoid(Vec3(1, 1, 1), 12, 8));
+    CHECK_THROWS_WITH(cut_out(whole, {{"one", Vec3(1, 0, 0)}, {"two", Vec3(-1, 0, 0)}}),
+                      Contains("\"one\" cannot be flattened: it is closed"));
+    const LinedMesh open(tube(0.1, 0.3, 12, 4));
+    CHECK_THROWS_WITH(cut_out(open, {{"sleeve", Vec3(0, 0, 0)}}), Contains("\"sleeve\" cannot be flattened: it has a hole"));
+}

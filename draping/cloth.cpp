@@ -75,8 +75,21 @@ ClothProblem::ClothProblem(std::unique_ptr<SheetEnergy> part, std::vector<double
     : FreeCloth(std::move(part), std::move(node_mass)), RestingContact(std::move(cloth), body, contact),
       sheet_(&static_cast<SheetEnergy*>(energy_.get())->sheet) {}
 
+void ClothProblem::rest_on(const Garment& garment, const PanelFabrics& fabrics) {
+    const double softness = sheet_->softness;
+    *sheet_ = make_sheet(garment, fabrics);
+    sheet_->softness = softness;
+    limits_.clear();
+    limits_.swap(sheet_->limits);
+    if (turn_ > 0) limit_strain(turn_, tighter_);
+    set_node_mass(node_masses(garment, fabrics));
+    renew_energy();
+}
+
 void ClothProblem::limit_strain(double turn, double tighter) {
     if (!sheet_) return;
+    turn_ = turn;
+    tighter_ = tighter;
     sheet_->limits = limits_;
     for (StrainLimit& limit : sheet_->limits) {
         limit.turn = turn;

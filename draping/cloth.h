@@ -40,6 +40,10 @@ public:
     Sheet* sheet() { return sheet_; } ///< null: of another model
     const Sheet* sheet() const { return sheet_; }
 
+    /// The sheet of the same mesh with another rest shape. Limits stay as hard; contact keeps the areas it began with, which only
+    /// weigh its barrier.
+    void rest_on(const Garment& garment, const PanelFabrics& fabrics);
+
     /// Turns the strain limits of a sheet on, as hard as `turn` says (see StrainLimit), and `tighter` by that share than
     /// the fabric's.
     void limit_strain(double turn, double tighter = 0);
@@ -64,6 +68,7 @@ private:
 
     Sheet* sheet_ = nullptr;
     std::vector<StrainLimit> limits_; ///< as the fabrics have them
+    double turn_ = 0, tighter_ = 0;   ///< as the sheet has them; turn 0: it has none
     std::vector<double> excess_;      ///< of friction, in the last residual()
 };
 

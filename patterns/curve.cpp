@@ -257,12 +257,16 @@ double length(const Loop& loop) {
     return sum;
 }
 
-std::vector<Vec2> sample(const Edge& edge, double t0, double t1, int n) {
+std::vector<Vec2> points_at(const Edge& edge, const std::vector<double>& fractions) {
     std::vector<Vec2> points;
-    points.reserve(n + 1);
-    for (double u : std::visit(Parameters{edge, equal_fractions(t0, t1, n)}, edge.curve))
+    points.reserve(fractions.size());
+    for (double u : std::visit(Parameters{edge, fractions}, edge.curve))
         points.push_back(point_at(edge, u));
     return points;
+}
+
+std::vector<Vec2> sample(const Edge& edge, double t0, double t1, int n) {
+    return points_at(edge, equal_fractions(t0, t1, n));
 }
 
 int intervals_for_sag(const Edge& edge, double tolerance) {

@@ -22,6 +22,9 @@ double length(const Loop& loop);
 /// The points at 0 and 1 are exactly the edge's ends.
 std::vector<Vec2> sample(const Edge& edge, double t0, double t1, int n);
 
+/// Points at the given fractions of arc length, those at 0 and 1 exactly the edge's ends.
+std::vector<Vec2> points_at(const Edge& edge, const std::vector<double>& fractions);
+
 /// How finely to sample: the polyline of `sample` over the whole edge with this many intervals strays from
 /// the curve by at most `tolerance` metres (at most 4096 intervals).
 int intervals_for_sag(const Edge& edge, double tolerance);

@@ -24,7 +24,7 @@ void RestingContact::rest_here(const Points& x, const FrictionCoefficients& coef
     cloth_friction.coefficient = coefficients.cloth;
     arrivals_ = 0;
     residual_ = renewed_at_ = std::numeric_limits<double>::infinity();
-    near_rest_ = rising_ = false;
+    near_rest_ = rising_ = frozen_ = false;
     trusted_ = at_rest;
 }
 
@@ -131,7 +131,7 @@ void RestingContact::touch(const Points& x) {
 
 bool RestingContact::renew_contact(const Points& x, const std::vector<double>& node_mass) {
     touch(x);
-    if (friction.coefficient == 0 && cloth_friction.coefficient == 0) return false;
+    if (frozen_ || (friction.coefficient == 0 && cloth_friction.coefficient == 0)) return false;
     const Stopwatch::Lap lap(contact_.clock());
     if (cloth_friction.coefficient > 0) match_cloth_friction(x);
     if (trusted_) {
@@ -196,6 +196,7 @@ double RestingContact::longest_contact_step(const Points& x, const Eigen::Vector
 
 std::vector<double> RestingContact::friction_excess(const Points& x) const {
     std::vector<double> excess(x.size(), 0.0);
+    if (frozen_) return excess;
     if (friction.coefficient > 0) {
         const Points normal = contact_.body_forces(active_);
         for (int i = 0; i < int(x.size()); ++i) {

@@ -26,6 +26,9 @@ public:
     /// Goes on with what has become of the friction of such a part of this; x is the state now.
     void end_part(const RestingContact& part, const std::vector<int>& nodes, const Points& x);
 
+    /// Frozen, all friction ties stay as they are, whatever touches: then all that acts is one energy. rest_here() ends it.
+    void freeze_friction() { frozen_ = true; }
+
     /// Finds the pairs that act at x, on which gradients and second derivatives stand; what is lagged stays as it is.
     void touch(const Points& x);
 
@@ -48,7 +51,7 @@ protected:
 
     double longest_contact_step(const Points& x, const Eigen::VectorXd& dx, std::vector<double>* shares);
 
-    /// Of friction over what contact can answer, N per node.
+    /// Of friction over what contact can answer, N per node; 0 while it is frozen.
     std::vector<double> friction_excess(const Points& x) const;
     /// Of so many arrivals, while nothing is near rest, one renews what is lagged.
     void renew_every(int arrivals) { renew_every_ = arrivals; }
@@ -71,6 +74,7 @@ private:
     int renew_every_ = 8;
     int arrivals_ = 0;               ///< since the cloth was tied to its place
     bool near_rest_ = false;
+    bool frozen_ = false;
     bool trusted_ = false;           ///< the contact forces of the next arrival are those of a state at rest
     bool rising_ = false;            ///< some node's friction has yet to catch up with its normal force
     double residual_ = 0, renewed_at_ = 0;

@@ -221,6 +221,15 @@ Vec3 stretch_strain(const StretchElement& element, const Points& x) {
     return shape_of(element, x).strain;
 }
 
+Vec3 stretch_strain_along(const StretchElement& element, const Points& x, const Points& v) {
+    const Shape shape = shape_of(element, x);
+    Vec3 g = Vec3::Zero();
+    for (int k = 0; k < 3; ++k)
+        for (int a = 0; a < element.patch.count; ++a)
+            g[k] += length_gradient(element, shape, k, a).dot(v[element.patch.nodes[a]]);
+    return element.to_strain * g;
+}
+
 double stretch_value(const StretchElement& element, const Points& x) {
     return element.area * stretch_response(element, stretch_strain(element, x)).energy;
 }

@@ -60,6 +60,9 @@ std::vector<StretchElement> make_stretch(const Garment& garment, const std::vect
 /// Green strain (weft, warp, twice shear) of one triangle.
 Vec3 stretch_strain(const StretchElement& element, const Points& x);
 
+/// How it changes as the nodes move by `v`, per node as x.
+Vec3 stretch_strain_along(const StretchElement& element, const Points& x, const Points& v);
+
 /// Energy per area and its derivatives by strain: stress (N/m) and tangent (N/m, positive semidefinite).
 struct StretchResponse {
     double energy = 0;

@@ -7,11 +7,19 @@ namespace toile {
 
 FreeCloth::FreeCloth(std::unique_ptr<Energy> energy, std::vector<double> node_mass, bool projected)
     : NodeProblem(std::move(node_mass)), energy_(std::move(energy)), projected_(projected) {
-    energy_->couplings(cloth_couplings_);
-    for (auto& [a, b] : cloth_couplings_)
+    renew_energy();
+}
+
+void FreeCloth::renew_energy() {
+    std::vector<std::pair<int, int>> pairs;
+    energy_->couplings(pairs);
+    for (auto& [a, b] : pairs)
         if (a > b) std::swap(a, b);
-    std::sort(cloth_couplings_.begin(), cloth_couplings_.end());
-    cloth_couplings_.erase(std::unique(cloth_couplings_.begin(), cloth_couplings_.end()), cloth_couplings_.end());
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    if (pairs != cloth_couplings_) matrix_made_ = false;
+    cloth_couplings_ = std::move(pairs);
+    if (matrix_made_) energy_->find_blocks(matrix_);
 }
 
 double FreeCloth::value(const Points& x) { return energy_->value(x) + toile::value(*this, node_mass_, x); }

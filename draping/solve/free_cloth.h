@@ -34,6 +34,9 @@ protected:
     virtual void more_couplings(std::vector<std::pair<int, int>>& pairs) const { (void)pairs; }
     virtual bool add_more_hessian(const Points& x, bool exact, BlockMatrix& h) const { return (void)x, (void)exact, (void)h, true; }
 
+    /// The energy has become another over the same nodes.
+    void renew_energy();
+
     std::unique_ptr<Energy> energy_;
 
 private:

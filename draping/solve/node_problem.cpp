@@ -6,7 +6,13 @@
 namespace toile {
 
 NodeProblem::NodeProblem(std::vector<double> node_mass)
-    : node_mass_(std::move(node_mass)), pinned_(node_mass_.size(), 0), mass_(3 * node_mass_.size()) {
+    : pinned_(node_mass.size(), 0) {
+    set_node_mass(std::move(node_mass));
+}
+
+void NodeProblem::set_node_mass(std::vector<double> node_mass) {
+    node_mass_ = std::move(node_mass);
+    mass_.resize(3 * Eigen::Index(node_mass_.size()));
     double sum = 0;
     for (int i = 0; i < points(); ++i) {
         mass_.segment<3>(3 * i).setConstant(node_mass_[i]);

@@ -34,6 +34,8 @@ public:
     double residual(const Points& x, const Eigen::VectorXd& g) override;
 
 protected:
+    void set_node_mass(std::vector<double> node_mass); ///< kg
+
     /// Force at node i beyond what g says that nothing answers, N.
     virtual double unanswered(const Points& x, int i) const {
         (void)x, (void)i;

@@ -269,6 +269,7 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
         problem.multiply(dx, hdx);
         const double bend = dx.dot(hdx);
 
+        const double noise = 1e-13 * (1 + std::abs(result.energy)); // below it energies do not tell steps apart
         double actual = 0, predicted = 0;
         bool accepted = false;
         for (int cut = 0; cut < 12 && t > 1e-12; ++cut) {
@@ -277,7 +278,6 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
             move(trial, dx, t);
             const double value = problem.value(trial);
             actual = result.energy - value;
-            const double noise = 1e-13 * (1 + std::abs(result.energy));
             if (actual >= sufficient * -t * slope || (predicted < noise && actual > -noise)) {
                 last = t * dx;
                 x = std::move(trial);
@@ -286,16 +286,16 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
             }
             t *= 0.5;
         }
-        const double ratio = predicted > 0 ? actual / predicted : 0;
+        const double ratio = predicted > noise ? actual / predicted : accepted ? 1 : 0;
         gained = accepted ? ratio : 0;
         if (radius > 0) {
             if (!accepted || t < feasible || ratio < 0.25)
                 radius *= 0.4;
             else if (ratio > 0.75 && boundary)
                 radius *= 2.5;
-        } else if (accepted && t == feasible && actual > 0.5 * predicted) {
+        } else if (accepted && t == feasible && ratio > 0.5) {
             h = std::min(2 * h, most_time_step);
-        } else if (!accepted || actual < 0.1 * predicted) {
+        } else if (!accepted || ratio < 0.1) {
             h *= 0.5;
         }
         if (!accepted) {

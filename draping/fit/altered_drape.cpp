@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/fit/altered_drape.h"
+
+#include "draping/hooks.h"
+#include "draping/settle_level.h"
+#include "patterns/plane.h"
+
+#include <stdexcept>
+
+namespace toile {
+
+namespace {
+
+constexpr double least_area = 0.1;    // of what a triangle has as drawn
+constexpr double anchored = 1e-6;     // residual at which friction that follows is taken as it is
+constexpr double solved = 1e-13;      // of a right side, in the norm of the preconditioner
+constexpr int most_conjugate = 400;
+
+} // namespace
+
+AlteredDrape::AlteredDrape(const MovingFlat& moving, const Eigen::VectorXd& amounts, const DrapeResult& drape,
+                           const TriMesh& body, const PanelFabrics& fabrics, const DrapeOptions& options,
+                           const AlteredOptions& how)
+    : moving_(moving), staging_(stage(moving.drawn, moving.flat)), body_(body), fabrics_(fabrics), options_(options), how_(how),
+      friction_(drape.friction), garment_(drape.garment), amounts_(amounts) {
+    DrapeRun run{.staging = staging_, .avatar = body_, .fabrics = fabrics_, .options = options_};
+    run.level = run.levels() - 1;
+    for (const Fabric& f : fabrics_) run.density = std::max(run.density, f.density);
+    run.garment = garment_;
+    run.x = drape.state.positions;
+    const std::vector<std::string> labels = labels_of(garment_);
+    for (const std::string& word : options_.hold)
+        for (const std::string& label : labels_called(word, labels)) run.held.push_back(label);
+    run.carried_at = label_heights(garment_, run.x, run.held);
+    problem_ = std::make_unique<ClothProblem>(garment_, fabrics_, body_, run.contact_options());
+    problem_->gravity = options_.gravity;
+    problem_->limit_strain(hard_limit);
+    add_fixtures(run, *problem_);
+}
+
+Garment AlteredDrape::garment_at(const Eigen::VectorXd& amounts) const {
+    const Pattern pattern = altered(moving_.drawn, moving_.alterations, amounts);
+    const int level = int(moving_.flat.levels.size()) - 1;
+    const std::vector<Vec2> points = moved_points(moving_, pattern, level);
+    if (const int t = collapsed_triangle(moving_, points, level, least_area); t >= 0)
+        throw std::invalid_argument("panel " + pattern.panels[garment_.panel_of_triangle[t]].name +
+                                    " is altered so far that its cloth would fold over");
+    Garment garment = garment_;
+    for (std::size_t v = 0; v < points.size(); ++v)
+        garment.uv[v] = to_grain(pattern.panels[garment.panel_of_vertex[v]].grain) * points[v];
+    for (std::size_t t = 0; t < garment.triangles.size(); ++t) {
+        const Triangle& v = garment.triangles[t];
+        garment.rest.edges[t] << garment.uv[v[1]] - garment.uv[v[0]], garment.uv[v[2]] - garment.uv[v[0]];
+    }
+    return garment;
+}
+
+void AlteredDrape::take(const Eigen::VectorXd& amounts) {
+    if (amounts == amounts_) return;
+    const Garment garment = garment_at(amounts);
+    problem_->rest_on(garment, fabrics_);
+    problem_->elastics = elastic_segments(staging_, garment);
+    amounts_ = amounts;
+}
+
+SettleResult AlteredDrape::rest(const Eigen::VectorXd& amounts, Points& x) {
+    take(amounts);
+    SettleOptions o;
+    o.tolerance = how_.tolerance;
+    o.max_iterations = how_.max_iterations;
+    o.max_step = std::min(o.max_step, staging_.levels.back().edge_length);
+    return settle(*problem_, x, factor_, o);
+}
+
+SettleResult AlteredDrape::anchor(const Eigen::VectorXd& amounts, Points& x) {
+    take(amounts);
+    problem_->rest_here(x, friction_, true);
+    SettleOptions o;
+    o.tolerance = anchored;
+    o.max_iterations = how_.max_iterations;
+    settle(*problem_, x, factor_, o);
+    problem_->freeze_friction();
+    return rest(amounts, x);
+}
+
+bool AlteredDrape::solve(const Points& x, const Eigen::VectorXd& right, Eigen::VectorXd& lambda) {
+    bool changed = false;
+    problem_->touch(x);
+    const auto factorised = [&](bool exact) {
+        BlockMatrix& h = problem_->hessian(x, exact, changed);
+        h.pin(problem_->pinned());
+        factor_.analyse(h);
+        return factor_.factorise(h);
+    };
+    if (!factorised(true)) {
+        if (!factorised(false)) return false;
+        problem_->hessian(x, true, changed).pin(problem_->pinned());
+    }
+    Eigen::VectorXd r = right, z, p, kp;
+    for (int i = 0; i < problem_->points(); ++i)
+        if (problem_->pinned()[i]) r.segment<3>(3 * i).setZero();
+    lambda.setZero(r.size());
+    factor_.solve(r, z);
+    p = z;
+    double rz = r.dot(z);
+    const double stop = solved * solved * rz;
+    for (int k = 0; k < most_conjugate && rz > stop; ++k) {
+        problem_->multiply(p, kp);
+        const double curvature = p.dot(kp);
+        if (!(curvature > 0)) return false;
+        lambda += rz / curvature * p;
+        r -= rz / curvature * kp;
+        factor_.solve(r, z);
+        const double next = r.dot(z);
+        p = z + next / rz * p;
+        rz = next;
+    }
+    return true;
+}
+
+RestWork AlteredDrape::work(const Garment& garment, const Points& x, const Points& lambda) const {
+    Loads loads = *problem_;
+    loads.elastics = elastic_segments(staging_, garment);
+    return rest_work(garment, fabrics_, loads, hard_limit, x, lambda);
+}
+
+} // namespace toile

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How a drape follows its pattern, on the skirt and the tee of examples/.
+#include "draping/fit/adjoint.h"
+#include "tests/support/fit_scene.h"
+
+#include <catch2/catch.hpp>
+
+using namespace toile;
+using namespace toile::test;
+
+namespace {
+
+std::vector<Alteration> of_the_skirt(const Pattern& p) {
+    return {{"hem, right front", lengthen_edge(p, 0, 0), -0.03, 0.03},
+            {"hem, middle", {{{0, 0, 0}, {0, 1}}}, -0.03, 0.03},
+            {"hem, curve", {{{0, 0, 1}, {0, 1}}}, -0.03, 0.03},
+            {"dart", widen_dart(p, 0, 4), -0.01, 0.01},
+            {"side seam", move_seam(p, 2), -0.03, 0.03},
+            {"back hip", move_edge(p, 1, 2), -0.03, 0.03}};
+}
+
+std::vector<Alteration> of_the_tee(const Pattern& p) {
+    return {{"hem, corner", {{{0, 0, 0}, {0, 1}}}, -0.03, 0.03},
+            {"shoulder", lengthen_edge(p, 0, 3), -0.03, 0.03},
+            {"neck, curve", {{{0, 4, 1}, {0, 1}}}, -0.03, 0.03},
+            {"back side", move_edge(p, 1, 0), -0.03, 0.03},
+            {"side seam", move_seam(p, 0), -0.03, 0.03},
+            {"sleeve head", {{{2, 1, 2}, {1, 0}}}, -0.03, 0.03}};
+}
+
+/// A shape that is not the drape's, and strain beyond less than the cloth has.
+std::vector<FitGoal> goals_near(const Garment& garment, const Points& x) {
+    Points target = x;
+    for (Vec3& p : target) p += Vec3(0.01 * p.y(), 0.01 * std::sin(8 * p.x()), 0);
+    StrainGoal strain;
+    for (int t = 0; t < int(garment.triangles.size()); ++t) strain.triangles.push_back(t);
+    strain.most = 1e-3;
+    return {{"shape", shape_goal(garment, target), 1e-3}, {"strain", strain, 1e-3}};
+}
+
+} // namespace
+
+TEST_CASE("the adjoint gradient is that of the drape: skirt and tee, with contact and friction") {
+    for (const std::string name : {"skirt", "tee"}) {
+        INFO(name);
+        const Pattern pattern = example_pattern(name);
+        const FitScene s = fit_scene(pattern, name == "skirt" ? of_the_skirt(pattern) : of_the_tee(pattern), 0.04);
+        REQUIRE(s.drape.status == DrapeStatus::converged);
+        AlteredDrape drape(s.moving, s.drawn(), s.drape, s.body, s.fabrics, s.options);
+        Points x = s.drape.state.positions;
+        REQUIRE(drape.anchor(s.drawn(), x).end == SettleEnd::settled);
+        const TouchFacts touch = count_touching(drape.problem().contact(), x);
+        REQUIRE(touch.body_pairs > 50);
+        const auto tied = [](const Tie& t) { return t.force > 0; };
+        const std::vector<Tie>& ties = drape.problem().friction.ties;
+        REQUIRE(std::count_if(ties.begin(), ties.end(), tied) > 20);
+
+        const std::vector<FitGoal> goals = goals_near(s.drape.garment, x);
+        Eigen::VectorXd gradient;
+        REQUIRE(fit_gradient(drape, goals, s.drawn(), x, gradient));
+        // The membrane has corners where triangles go slack: a difference has to be short.
+        constexpr double h = 1e-7;
+        for (Eigen::Index k = 0; k < gradient.size(); ++k) {
+            double sides[2];
+            for (int side = 0; side < 2; ++side) {
+                Eigen::VectorXd near = s.drawn();
+                near[k] = side == 0 ? -h : h;
+                Points y = x;
+                REQUIRE(drape.rest(near, y).residual <= 1e-9);
+                sides[side] = value(goals, drape.garment_at(near), y);
+            }
+            INFO(s.moving.alterations[k].name);
+            CHECK(std::abs((sides[1] - sides[0]) / (2 * h) - gradient[k]) < 1e-5 * gradient.norm());
+            CHECK(std::abs(gradient[k]) > 1e-3 * gradient.norm());
+        }
+    }
+}

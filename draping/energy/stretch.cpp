@@ -221,24 +221,15 @@ Vec3 stretch_strain(const StretchElement& element, const Points& x) {
     return shape_of(element, x).strain;
 }
 
-Vec3 stretch_strain_along(const StretchElement& element, const Points& x, const Points& v) {
-    const Shape shape = shape_of(element, x);
-    Vec3 g = Vec3::Zero();
-    for (int k = 0; k < 3; ++k)
-        for (int a = 0; a < element.patch.count; ++a)
-            g[k] += length_gradient(element, shape, k, a).dot(v[element.patch.nodes[a]]);
-    return element.to_strain * g;
-}
-
 double stretch_value(const StretchElement& element, const Points& x) {
     return element.area * stretch_response(element, stretch_strain(element, x)).energy;
 }
 
-void stretch_gradient(const StretchElement& element, const Points& x,
-                      std::array<Vec3, Patch::max_nodes>& gradient) {
-    const Shape shape = shape_of(element, x);
-    const Vec3 force =
-        element.area * element.to_strain.transpose() * stretch_response(element, shape.strain).stress;
+namespace {
+
+void gradient_with(const StretchElement& element, const Shape& shape, const Vec3& stress,
+                   std::array<Vec3, Patch::max_nodes>& gradient) {
+    const Vec3 force = element.area * element.to_strain.transpose() * stress;
     for (int a = 0; a < element.patch.count; ++a) {
         gradient[a].setZero();
         for (int k = 0; k < 3; ++k)
@@ -248,6 +239,19 @@ void stretch_gradient(const StretchElement& element, const Points& x,
         gradient[edge_end(k)] += force[k] * shape.edge[k];
         gradient[edge_start(k)] -= force[k] * shape.edge[k];
     }
+}
+
+} // namespace
+
+void stretch_gradient(const StretchElement& element, const Points& x,
+                      std::array<Vec3, Patch::max_nodes>& gradient) {
+    const Shape shape = shape_of(element, x);
+    gradient_with(element, shape, stretch_response(element, shape.strain).stress, gradient);
+}
+
+void stretch_gradient(const StretchElement& element, const Vec3& stress, const Points& x,
+                      std::array<Vec3, Patch::max_nodes>& gradient) {
+    gradient_with(element, shape_of(element, x), stress, gradient);
 }
 
 StretchCurvature stretch_curvature(const StretchElement& element, const Points& x, HessianKind kind) {

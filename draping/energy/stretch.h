@@ -60,9 +60,6 @@ std::vector<StretchElement> make_stretch(const Garment& garment, const std::vect
 /// Green strain (weft, warp, twice shear) of one triangle.
 Vec3 stretch_strain(const StretchElement& element, const Points& x);
 
-/// How it changes as the nodes move by `v`, per node as x.
-Vec3 stretch_strain_along(const StretchElement& element, const Points& x, const Points& v);
-
 /// Energy per area and its derivatives by strain: stress (N/m) and tangent (N/m, positive semidefinite).
 struct StretchResponse {
     double energy = 0;
@@ -74,6 +71,9 @@ StretchResponse stretch_response(const StretchElement& element, const Vec3& stra
 double stretch_value(const StretchElement& element, const Points& x);
 /// Gradient of one element by node of its patch.
 void stretch_gradient(const StretchElement& element, const Points& x,
+                      std::array<Vec3, Patch::max_nodes>& gradient);
+/// The same with this stress (N/m) whatever the strain.
+void stretch_gradient(const StretchElement& element, const Vec3& stress, const Points& x,
                       std::array<Vec3, Patch::max_nodes>& gradient);
 
 /// The second derivative of one element, block by block as they are asked for.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/fit/altered_drape.h"
 
+#include "draping/fit/rest_force.h"
 #include "draping/hooks.h"
 #include "draping/settle_level.h"
 #include "patterns/plane.h"
@@ -12,6 +13,7 @@ namespace toile {
 namespace {
 
 constexpr double least_area = 0.1;    // of what a triangle has as drawn
+constexpr double rest_step = 1e-6;    // m of an alteration: slivers have edges of half a millimetre
 constexpr double anchored = 1e-6;     // residual at which friction that follows is taken as it is
 constexpr double solved = 1e-13;      // of a right side, in the norm of the preconditioner
 constexpr int most_conjugate = 400;
@@ -83,7 +85,9 @@ SettleResult AlteredDrape::anchor(const Eigen::VectorXd& amounts, Points& x) {
     return rest(amounts, x);
 }
 
-bool AlteredDrape::solve(const Points& x, const Eigen::VectorXd& right, Eigen::VectorXd& lambda) {
+bool AlteredDrape::solve(const Eigen::VectorXd& amounts, const Points& x, const Eigen::VectorXd& right,
+                         Eigen::VectorXd& lambda) {
+    take(amounts);
     bool changed = false;
     problem_->touch(x);
     const auto factorised = [&](bool exact) {
@@ -118,10 +122,22 @@ bool AlteredDrape::solve(const Points& x, const Eigen::VectorXd& right, Eigen::V
     return true;
 }
 
-RestWork AlteredDrape::work(const Garment& garment, const Points& x, const Points& lambda) const {
-    Loads loads = *problem_;
-    loads.elastics = elastic_segments(staging_, garment);
-    return rest_work(garment, fabrics_, loads, hard_limit, x, lambda);
+Eigen::MatrixXd AlteredDrape::force_slopes(const Eigen::VectorXd& amounts, const Points& x) const {
+    const MembraneTangent law = membrane_tangent(garment_at(amounts), fabrics_, x);
+    const auto force_at = [&](Eigen::Index k, double by) {
+        Eigen::VectorXd near = amounts;
+        near[k] += by;
+        const Garment garment = garment_at(near);
+        Loads loads = *problem_;
+        loads.elastics = elastic_segments(staging_, garment);
+        return rest_force(garment, fabrics_, loads, hard_limit, law, x);
+    };
+    Eigen::MatrixXd slopes(3 * Eigen::Index(x.size()), amounts.size());
+    for (Eigen::Index k = 0; k < amounts.size(); ++k)
+        slopes.col(k) = (force_at(k, rest_step) - force_at(k, -rest_step)) / (2 * rest_step);
+    for (int i = 0; i < problem_->points(); ++i)
+        if (problem_->pinned()[i]) slopes.middleRows<3>(3 * i).setZero();
+    return slopes;
 }
 
 } // namespace toile

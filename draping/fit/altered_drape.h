@@ -7,7 +7,6 @@
 
 #include "draping/drape_run.h"
 #include "draping/fit/moving_flat.h"
-#include "draping/fit/rest_work.h"
 
 #include <memory>
 
@@ -36,10 +35,11 @@ public:
 
     /// At rest at `x` with these amounts: the solution of K lambda = r, K the exact second derivative of all that acts. False
     /// when K is not positive definite, as of a state that is no minimum.
-    bool solve(const Points& x, const Eigen::VectorXd& r, Eigen::VectorXd& lambda);
+    bool solve(const Eigen::VectorXd& amounts, const Points& x, const Eigen::VectorXd& r, Eigen::VectorXd& lambda);
 
-    /// What depends on the rest shape of `garment`, an altered one, among what acts along lambda at x.
-    RestWork work(const Garment& garment, const Points& x, const Points& lambda) const;
+    /// dg/dp at x: a column for every alteration, how the forces on the nodes change with its amount while they stay, N/m; 0
+    /// at pinned ones.
+    Eigen::MatrixXd force_slopes(const Eigen::VectorXd& amounts, const Points& x) const;
 
     const ClothProblem& problem() const { return *problem_; }
     const PanelFabrics& fabrics() const { return fabrics_; }

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "draping/energy/stretch.h"
 #include "draping/fit/goal.h"
-#include "tests/support/plain_fabric.h"
-#include "tests/support/random.h"
 #include "tests/support/skirt.h"
 
 #include <catch2/catch.hpp>
@@ -66,19 +63,4 @@ TEST_CASE("a miss is what a tape or a ruler says") {
     const Points same = s.x;
     CHECK(miss({"shape", shape_goal(s.garment, same), 1e-3}, s.garment, s.x) == 0);
     CHECK(std::isinf(miss({"girth", GirthGoal{2, 1, {0, 1}}, 5e-3}, s.garment, s.x)));
-}
-
-TEST_CASE("strain along a motion is the derivative of strain") {
-    const Skirt s = shaken_skirt();
-    const auto elements = make_stretch(s.garment, {fabric_preset("poplin"), fabric_preset("poplin")});
-    Points v = s.x;
-    for (std::size_t i = 0; i < v.size(); ++i) v[i] = Vec3(std::sin(2.0 * double(i)), std::cos(double(i)), std::sin(0.5 * double(i)));
-    constexpr double h = 1e-6;
-    Points low = s.x, high = s.x;
-    flat(low) -= h * flat(v);
-    flat(high) += h * flat(v);
-    for (const StretchElement& e : elements) {
-        const Vec3 along = stretch_strain_along(e, s.x, v);
-        CHECK((along - (stretch_strain(e, high) - stretch_strain(e, low)) / (2 * h)).norm() < 1e-7 * along.norm());
-    }
 }

@@ -28,7 +28,7 @@ const std::map<std::string, Strings> doors = {
     {"CGAL/", {"geometry/inside.cpp", "geometry/intersections.cpp", "patterns/triangulate_cgal.cpp", "src/version.cpp"}},
     {"cholmod.h", {"sewing/sparse_solve.cpp", "draping/algebra/cholesky.cpp", "src/version.cpp"}},
     {"suitesparse/", {}},
-    {"nlopt", {"draping/rest/nearest_lbfgs.cpp"}},
+    {"nlopt", {"draping/rest/nearest_lbfgs.cpp", "draping/fit/optimise.cpp"}},
     {"assimp/", {"io/read_polygons.cpp", "src/version.cpp"}},
     {"embree3/", {"io/preview.cpp", "src/version.cpp"}},
     {"meshoptimizer", {"geometry/simplify.cpp", "src/version.cpp"}},

@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/fit/fit.h"
+
+#include "draping/fit/adjoint.h"
+#include "geometry/text.h"
+#include "patterns/check.h"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+namespace toile {
+
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double length_step = 1e-6;  // m, of the difference by which a seam's slope is found
+constexpr double seam_unit = 1e-3;    // m, in which the optimiser is told of seams
+constexpr double moved = 1e-6;        // m per m: a seam that an alteration changes by less it does not change
+constexpr double independent = 1e-6;  // of the largest slope: seams below follow from others
+constexpr double at_rest = 1e-3;      // residual beyond which an equilibrium is none
+constexpr double comfortable = 0.5;   // of its tolerance, with which a goal ends the search
+constexpr double at_bound = 1e-3;     // of the room between bounds
+constexpr double gain = 0.01;         // of the value, for which another round is begun
+
+/// What the amounts cost by themselves: for a unit of cost an alteration moves the cloth's points by a tolerance, in their
+/// root mean square. 1/m2.
+VectorXd cost_of(const MovingFlat& moving, const VectorXd& at, double tolerance) {
+    const int level = int(moving.flat.levels.size()) - 1;
+    VectorXd cost(at.size());
+    for (Eigen::Index k = 0; k < at.size(); ++k) {
+        const auto points = [&](double by) {
+            VectorXd near = at;
+            near[k] += by;
+            return moved_points(moving, altered(moving.drawn, moving.alterations, near), level);
+        };
+        const std::vector<Vec2> low = points(-length_step), high = points(length_step);
+        double sum = 0;
+        for (std::size_t v = 0; v < low.size(); ++v) sum += (high[v] - low[v]).squaredNorm();
+        cost[k] = std::max(sum / double(low.size()) / (4 * length_step * length_step), 1e-6) / (tolerance * tolerance);
+    }
+    return cost;
+}
+
+struct Seams {
+    const MovingFlat& moving;
+
+    double difference(int seam, const VectorXd& amounts) const {
+        return seam_difference(moving.drawn, altered(moving.drawn, moving.alterations, amounts), seam);
+    }
+    VectorXd slope(int seam, const VectorXd& amounts) const {
+        VectorXd g(amounts.size());
+        for (Eigen::Index k = 0; k < g.size(); ++k) {
+            VectorXd low = amounts, high = amounts;
+            low[k] -= length_step;
+            high[k] += length_step;
+            g[k] = (difference(seam, high) - difference(seam, low)) / (2 * length_step);
+        }
+        return g;
+    }
+};
+
+/// Seams that alterations can make unequal: their slopes where all are off their bounds a little, one row each.
+std::vector<int> seams_at_stake(const MovingFlat& moving, const VectorXd& aside, Eigen::MatrixXd& slopes) {
+    const Seams seams{moving};
+    std::vector<int> found;
+    std::vector<VectorXd> rows;
+    for (int s = 0; s < int(moving.drawn.seams.size()); ++s) {
+        const VectorXd slope = seams.slope(s, aside);
+        if (!(slope.cwiseAbs().maxCoeff() > moved)) continue;
+        found.push_back(s);
+        rows.push_back(slope);
+    }
+    slopes.resize(Eigen::Index(rows.size()), aside.size());
+    for (std::size_t r = 0; r < rows.size(); ++r) slopes.row(Eigen::Index(r)) = rows[r];
+    return found;
+}
+
+/// Those of them from which the others follow, as the mirror image of a seam does from it where both sides are altered alike.
+std::vector<int> independent_of(const std::vector<int>& seams, const Eigen::MatrixXd& slopes) {
+    if (seams.empty()) return {};
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(slopes.transpose());
+    qr.setThreshold(independent);
+    std::vector<int> kept;
+    for (Eigen::Index k = 0; k < qr.rank(); ++k) kept.push_back(seams[qr.colsPermutation().indices()[k]]);
+    std::sort(kept.begin(), kept.end());
+    return kept;
+}
+
+struct Search {
+    AlteredDrape& drape;
+    const std::vector<FitGoal>& goals;
+    const FitOptions& options;
+    std::chrono::steady_clock::time_point started;
+    VectorXd cost; ///< 1/m2, of the square of an amount
+    FitResult& result;
+
+    struct Known {
+        VectorXd amounts;
+        Points x;
+        double value;
+    };
+    std::vector<Known> known; ///< of this round, first where it began
+    bool met = false, stopped = false;
+
+    double cost_of(const VectorXd& amounts) const { return cost.dot(amounts.cwiseAbs2()); }
+
+    double whole_value(const VectorXd& amounts, const Points& x) const {
+        return value(goals, drape.garment_at(amounts), x) + cost_of(amounts);
+    }
+
+    bool meets(const VectorXd& amounts, const Points& x, double share) const {
+        const Garment garment = drape.garment_at(amounts);
+        return std::all_of(goals.begin(), goals.end(),
+                           [&](const FitGoal& g) { return miss(g, garment, x) <= share * g.tolerance; });
+    }
+
+    /// The equilibrium, from the nearest that is known.
+    const Known* rest(const VectorXd& amounts) {
+        const auto off = [&](const Known& k) { return cost_of(k.amounts - amounts); };
+        const auto nearest =
+            std::min_element(known.begin(), known.end(), [&](const Known& a, const Known& b) { return off(a) < off(b); });
+        if (nearest->amounts == amounts) return &*nearest;
+        Points x = nearest->x;
+        ++result.evaluations;
+        try {
+            if (!(drape.rest(amounts, x).residual <= at_rest)) return ++result.not_at_rest, nullptr;
+        } catch (const std::invalid_argument&) { // folded over: farther than this is no pattern
+            return ++result.not_at_rest, nullptr;
+        }
+        known.push_back({amounts, x, whole_value(amounts, x)});
+        return &known.back();
+    }
+
+    double evaluate(const VectorXd& amounts, VectorXd* gradient) {
+        const Known* at = rest(amounts);
+        if (!at) return infinity;
+        met = meets(amounts, at->x, comfortable);
+        if (gradient && !met) {
+            const Points x = at->x;
+            if (!fit_gradient(drape, goals, amounts, x, *gradient)) return infinity;
+            *gradient += 2 * cost.cwiseProduct(amounts);
+        }
+        if (options.progress && !options.progress(result.evaluations, at->value)) stopped = true;
+        return at->value;
+    }
+
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count(); }
+    bool spent() const { return seconds() > options.max_seconds || result.evaluations >= options.max_evaluations; }
+    bool over() const { return met || stopped || spent(); }
+};
+
+OptimiseProblem problem_of(Search& search, const std::vector<int>& seams, const VectorXd& start) {
+    const MovingFlat& moving = search.drape.moving();
+    OptimiseProblem p;
+    p.start = p.low = p.high = start;
+    for (Eigen::Index k = 0; k < start.size(); ++k) {
+        p.low[k] = moving.alterations[k].low;
+        p.high[k] = moving.alterations[k].high;
+    }
+    if (!fit_curvature(search.drape, search.goals, start, search.known[0].x, p.curvature)) p.curvature.setZero(start.size(), start.size());
+    p.curvature.diagonal() += 2 * search.cost;
+    p.value = [&search](const VectorXd& amounts, VectorXd* g) { return search.evaluate(amounts, g); };
+    p.stop = [&search] { return search.over(); };
+    for (const int s : seams)
+        p.equalities.push_back({moving.drawn.seams[s].name, [&moving, s](const VectorXd& amounts, VectorXd* g) {
+                                    if (g) *g = Seams{moving}.slope(s, amounts) / seam_unit;
+                                    return Seams{moving}.difference(s, amounts) / seam_unit;
+                                }});
+    return p;
+}
+
+void refuse(const MovingFlat& moving, const VectorXd& start) {
+    if (moving.alterations.empty()) throw std::invalid_argument("there is nothing to alter");
+    for (std::size_t k = 0; k < moving.alterations.size(); ++k) {
+        const Alteration& a = moving.alterations[k];
+        const double at = start[Eigen::Index(k)];
+        if (!(a.low < a.high))
+            throw std::invalid_argument(text("alteration \"%s\" has nowhere to go: its bounds are %.4g and %.4g mm", a.name.c_str(),
+                                             1e3 * a.low, 1e3 * a.high));
+        if (!(at >= a.low && at <= a.high))
+            throw std::invalid_argument(text("alteration \"%s\" starts at %.4g mm, outside of its bounds %.4g and %.4g mm",
+                                             a.name.c_str(), 1e3 * at, 1e3 * a.low, 1e3 * a.high));
+    }
+}
+
+void note_bounds(const MovingFlat& moving, FitResult& r) {
+    for (std::size_t k = 0; k < moving.alterations.size(); ++k) {
+        const Alteration& a = moving.alterations[k];
+        const double at = r.amounts[Eigen::Index(k)], near = at_bound * (a.high - a.low);
+        if (at < a.low + near || at > a.high - near) r.at_bounds.push_back(a.name);
+    }
+}
+
+/// The sentence of a search that did not meet its goals.
+std::string explain(const FitResult& r, const std::vector<FitGoal>& goals, const std::string& how) {
+    std::string missed;
+    for (std::size_t k = 0; k < goals.size(); ++k)
+        if (!(r.after[k] <= goals[k].tolerance))
+            missed += (missed.empty() ? "" : "; ") + text("\"%s\" is missed by %.3g of %.3g allowed", goals[k].name.c_str(),
+                                                          r.after[k], goals[k].tolerance);
+    std::string bounds;
+    for (const std::string& name : r.at_bounds) bounds += (bounds.empty() ? ", with these at their bounds: " : ", ") + name;
+    return how + (missed.empty() ? "" : ": " + missed) + bounds;
+}
+
+} // namespace
+
+const char* to_string(FitEnd end) {
+    switch (end) {
+    case FitEnd::met: return "met";
+    case FitEnd::nearest: return "nearest";
+    case FitEnd::limit: return "limit";
+    case FitEnd::stopped: return "stopped";
+    case FitEnd::unreachable: return "unreachable";
+    }
+    return "nearest";
+}
+
+double seam_difference(const Pattern& drawn, const Pattern& pattern, int seam) {
+    const SeamLengths before = seam_lengths(drawn, drawn.seams[seam]), now = seam_lengths(pattern, drawn.seams[seam]);
+    return now.a - before.a / before.b * now.b;
+}
+
+FitResult fit(AlteredDrape& drape, const std::vector<FitGoal>& goals, const VectorXd& start, const Points& at_rest_there,
+              const FitOptions& options) {
+    const MovingFlat& moving = drape.moving();
+    refuse(moving, start);
+    const auto started = std::chrono::steady_clock::now();
+    FitResult r;
+    r.amounts = start;
+    r.x = at_rest_there;
+    Eigen::MatrixXd slopes;
+    VectorXd aside = start;
+    for (std::size_t k = 0; k < moving.alterations.size(); ++k) // where symmetry hides no slope
+        aside[Eigen::Index(k)] += 0.01 * (moving.alterations[k].high - moving.alterations[k].low);
+    const std::vector<int> stakes = seams_at_stake(moving, aside, slopes);
+    const std::vector<int> seams = independent_of(stakes, slopes);
+    r.seams = int(stakes.size());
+    if (Eigen::Index(seams.size()) >= start.size())
+        throw std::invalid_argument(text("%d seams whose sides have to stay as long as each other leave %d alterations nothing to "
+                                         "choose; alter both sides of each alike",
+                                         int(seams.size()), int(start.size())));
+    r.optimiser = options.optimiser.value_or(seams.empty() ? Optimiser::lbfgs : Optimiser::slsqp);
+    if (r.optimiser == Optimiser::lbfgs && !seams.empty())
+        throw std::invalid_argument("lbfgs keeps bounds alone, and " + moving.drawn.seams[seams[0]].name +
+                                    " has to keep the lengths of its sides: slsqp or cobyla");
+
+    double strictest = infinity;
+    for (const FitGoal& g : goals) strictest = std::min(strictest, g.tolerance);
+    Search search{drape, goals, options, started, options.stay * cost_of(moving, start, strictest), r, {}};
+
+    double last = infinity;
+    OptimiseResult found;
+    for (r.rounds = 1; r.rounds <= options.max_rounds; ++r.rounds) {
+        if (options.anew) r.x = at_rest_there;
+        drape.anchor(r.amounts, r.x);
+        search.known = {{r.amounts, r.x, search.whole_value(r.amounts, r.x)}};
+        const double now = search.known[0].value;
+        if (r.rounds == 1)
+            for (const FitGoal& g : goals) r.before.push_back(miss(g, drape.garment_at(r.amounts), r.x));
+        const bool good = search.meets(r.amounts, r.x, r.rounds == 1 ? comfortable : 1);
+        if (good || (r.rounds > 1 && !(now < (1 - gain) * last)) || search.stopped) break;
+        last = now;
+        OptimiseOptions o;
+        o.optimiser = r.optimiser;
+        o.max_evaluations = std::clamp(options.max_evaluations - r.evaluations, 1, options.round_evaluations);
+        o.value_tolerance = 1e-2;
+        o.equal_within = options.equal_within / seam_unit;
+        search.met = false;
+        found = optimise(problem_of(search, seams, r.amounts), o);
+        if (found.end == OptimiseEnd::failed) break;
+        r.amounts = found.at;
+        r.x = search.rest(r.amounts)->x;
+        if (search.over() && !search.met) break;
+    }
+    r.rounds = std::min(r.rounds, options.max_rounds);
+    for (const FitGoal& g : goals) r.after.push_back(miss(g, drape.garment_at(r.amounts), r.x));
+    const Pattern pattern = altered(moving.drawn, moving.alterations, r.amounts);
+    std::string worst;
+    for (const int s : stakes)
+        if (const double off = std::abs(seam_difference(moving.drawn, pattern, s)); off > r.unequal) {
+            r.unequal = off;
+            worst = moving.drawn.seams[s].name;
+        }
+    note_bounds(moving, r);
+    r.seconds = search.seconds();
+    const bool equal = r.unequal <= 2 * options.equal_within, all = search.meets(r.amounts, r.x, 1);
+    if (!equal) {
+        r.end = FitEnd::unreachable;
+        r.why = explain(r, goals, text("%s cannot be kept equal: its sides differ by %.3g mm", worst.c_str(), 1e3 * r.unequal));
+    } else if (all) {
+        r.end = FitEnd::met;
+    } else if (search.stopped) {
+        r.end = FitEnd::stopped;
+        r.why = explain(r, goals, "stopped by the caller");
+    } else if (search.spent()) {
+        r.end = FitEnd::limit;
+        r.why = explain(r, goals, text("stopped after %d equilibria and %.3g s", r.evaluations, r.seconds));
+    } else {
+        r.end = FitEnd::nearest;
+        r.why = explain(r, goals, found.end == OptimiseEnd::failed ? found.why : "no alterations within the bounds come nearer");
+    }
+    return r;
+}
+
+} // namespace toile

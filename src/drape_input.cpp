@@ -115,13 +115,17 @@ const Panel* moulded_panel(const Pattern& pattern) {
     return nullptr;
 }
 
-DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length, double max_memory,
-                    bool grain_lattice) {
-    refuse_too_fine(pattern, edge_length, max_memory);
+FlatPattern flat_of(const Pattern& pattern, double edge_length, bool grain_lattice) {
     TriangulateOptions options;
     options.edge_length = edge_length;
     options.levels = levels_for(edge_length);
     options.grain_lattice = grain_lattice;
+    return triangulate(pattern, options);
+}
+
+DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length, double max_memory,
+                    bool grain_lattice) {
+    refuse_too_fine(pattern, edge_length, max_memory);
     DrapeInput input;
     take_fabrics(pattern, common_fabric(pattern, fabric), input);
     for (const Panel& panel : pattern.panels)
@@ -130,7 +134,7 @@ DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double ed
         throw InputError("panel " + panel->name + " keeps the triangles of " + panel->rest->file +
                          ", which do not lie along warp and weft as those of inextensible cloth must; another --method was expected");
     try {
-        input.staging = stage(pattern, triangulate(pattern, options));
+        input.staging = stage(pattern, flat_of(pattern, edge_length, grain_lattice));
     } catch (const std::runtime_error& error) {
         if (!moulded_panel(pattern)) throw;
         throw InputError(error.what()); // check() cannot know where seams will ask for points

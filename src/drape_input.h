@@ -35,6 +35,9 @@ const Panel* moulded_panel(const Pattern& pattern);
 DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length, double max_memory = 1e18,
                     bool grain_lattice = false);
 
+/// The same pattern's meshes alone.
+FlatPattern flat_of(const Pattern& pattern, double edge_length, bool grain_lattice = false);
+
 /// A staged mesh and its companion, which may say fabrics, layers, pins and elastics; the edges of its panels are
 /// the loops of their border. Throws InputError.
 DrapeInput read_staged_input(const std::string& path, const std::string& fabric, const TriMesh& body);

@@ -27,10 +27,7 @@ inline Pattern example_pattern(const std::string& name) {
 inline FitScene fit_scene(const Pattern& pattern, std::vector<Alteration> alterations, double edge_length) {
     FitScene s;
     DrapeInput input = input_of(pattern, "", edge_length);
-    TriangulateOptions options;
-    options.edge_length = edge_length;
-    options.levels = levels_for(edge_length);
-    s.moving = moving_flat(pattern, triangulate(pattern, options), std::move(alterations));
+    s.moving = moving_flat(pattern, flat_of(pattern, edge_length), std::move(alterations));
     s.fabrics = input.fabrics;
     s.body = read_body("", {}, false).mesh;
     s.drape = drape(input.staging, {s.body, smoothed_toward_core(s.body, 0.01)}, s.fabrics, s.options);

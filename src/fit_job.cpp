@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "src/fit_job.h"
+
+#include "geometry/text.h"
+#include "io/companion.h"
+#include "io/fit_spec.h"
+#include "io/read_garment.h"
+#include "io/write_altered.h"
+#include "io/write_file.h"
+#include "io/write_garment.h"
+#include "patterns/check.h"
+#include "src/drape_input.h"
+#include "src/pipeline.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+
+namespace fs = std::filesystem;
+
+namespace toile {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double fit_tolerance = 1e-7; // residual of equilibria
+
+FitGoal shape_goal_of(const GoalSpec& spec, const DrapeResult& drape) {
+    const ReadGarment read = read_garment(spec.file);
+    if (node_triangles(read.garment) != node_triangles(drape.garment))
+        throw InputError(spec.file + ": expected the triangles that the pattern has at this edge length, as toile drape writes them");
+    return {spec.name, shape_goal(drape.garment, read.x), spec.tolerance};
+}
+
+FitGoal level_goal_of(const GoalSpec& spec, const DrapeResult& drape) {
+    std::vector<std::vector<int>> lines;
+    for (const BorderLine& line : drape.garment.borders)
+        if (std::find(spec.edges.begin(), spec.edges.end(), std::array{line.panel, line.edge}) != spec.edges.end())
+            lines.push_back(line.vertices);
+    return {spec.name, level_goal(drape.garment, lines, spec.height), spec.tolerance};
+}
+
+FitGoal ease_goal_of(const GoalSpec& spec, const DrapeResult& drape, const TriMesh& body) {
+    const double girth = torso_girth(body, *spec.height);
+    if (!(girth > 0))
+        throw InputError(text("goal \"%s\": the body has no girth at %.0f mm", spec.name.c_str(), 1e3 * *spec.height));
+    FitGoal goal{spec.name, GirthGoal{*spec.height, girth + spec.amount, spec.panels}, spec.tolerance};
+    if (!std::isfinite(miss(goal, drape.garment, drape.state.positions)))
+        throw InputError(text("goal \"%s\": the garment has no girth at %.0f mm", spec.name.c_str(), 1e3 * *spec.height));
+    return goal;
+}
+
+FitGoal stretch_goal_of(const GoalSpec& spec, const DrapeResult& drape) {
+    StrainGoal goal{{}, spec.warp, spec.amount};
+    for (int t = 0; t < int(drape.garment.triangles.size()); ++t) {
+        const Triangle n = drape.garment.nodes(t);
+        const Points& x = drape.state.positions;
+        const Vec3 centre = (x[n[0]] + x[n[1]] + x[n[2]]) / 3;
+        const int panel = drape.garment.panel_of_triangle[t];
+        if (std::find(spec.panels.begin(), spec.panels.end(), panel) == spec.panels.end()) continue;
+        if (!spec.near || (centre - *spec.near).norm() < spec.within) goal.triangles.push_back(t);
+    }
+    if (goal.triangles.empty()) throw InputError("goal \"" + spec.name + "\": no cloth is there");
+    return {spec.name, goal, spec.tolerance};
+}
+
+FitGoal goal_of(const GoalSpec& spec, const DrapeResult& drape, const TriMesh& body) {
+    switch (spec.kind) {
+    case GoalSpec::Kind::shape: return shape_goal_of(spec, drape);
+    case GoalSpec::Kind::level: return level_goal_of(spec, drape);
+    case GoalSpec::Kind::ease: return ease_goal_of(spec, drape, body);
+    case GoalSpec::Kind::stretch: return stretch_goal_of(spec, drape);
+    }
+    return {};
+}
+
+/// A shape is a place to begin: the equilibrium that is looked for is the one near it. Where it crosses something it is none.
+bool take_shape(const std::vector<FitGoal>& goals, const DrapeResult& drape, const TriMesh& body, Points& x) {
+    for (const FitGoal& goal : goals)
+        if (const auto* shape = std::get_if<ShapeGoal>(&goal.what)) {
+            const IntersectionCount n =
+                count_intersections(node_triangles(drape.garment), shape->target, body, drape.garment.stitches);
+            if (n.cloth_avatar + n.cloth_cloth > 0) continue;
+            x = shape->target;
+            return true;
+        }
+    return false;
+}
+
+/// The altered pattern draped from nothing, as whoever cuts it will: what is left of the goals.
+Json draped_anew(const MovingFlat& moving, const Pattern& pattern, const Avatar& avatar, const PanelFabrics& fabrics,
+                 const DrapeOptions& options, const std::vector<FitGoal>& goals, int nodes) {
+    const DrapeResult d = drape(stage(pattern, moved_flat(moving, pattern)), avatar, fabrics, options);
+    Json misses = Json::array();
+    for (const FitGoal& goal : goals)
+        misses.push_back(d.garment.node_count == nodes ? Json(miss(goal, d.garment, d.state.positions)) : Json()); // or seams are open
+    return {{"status", to_string(d.status)}, {"misses", misses}};
+}
+
+Json alterations_json(const MovingFlat& moving, const FitResult& r) {
+    Json all = Json::array();
+    for (std::size_t k = 0; k < moving.alterations.size(); ++k) {
+        const Alteration& a = moving.alterations[k];
+        const bool bound = std::find(r.at_bounds.begin(), r.at_bounds.end(), a.name) != r.at_bounds.end();
+        all.push_back({{"name", a.name}, {"mm", 1e3 * r.amounts[Eigen::Index(k)]}, {"at_bound", bound}});
+    }
+    return all;
+}
+
+Json edges_json(const Pattern& drawn, const Pattern& pattern) {
+    Json all = Json::array();
+    for (const EdgeChange& c : edge_changes(drawn, pattern))
+        all.push_back({{"panel", drawn.panels[c.panel].name},
+                       {"edge", c.edge},
+                       {"length_before_mm", 1e3 * c.before},
+                       {"length_after_mm", 1e3 * c.after},
+                       {"moved_mm", 1e3 * c.moved}});
+    return all;
+}
+
+Json goals_json(const std::vector<FitGoal>& goals, const FitResult& r) {
+    Json all = Json::array();
+    for (std::size_t k = 0; k < goals.size(); ++k)
+        all.push_back({{"name", goals[k].name},
+                       {"before", r.before[k]},
+                       {"after", r.after[k]},
+                       {"tolerance", goals[k].tolerance},
+                       {"met", r.after[k] <= goals[k].tolerance}});
+    return all;
+}
+
+std::vector<std::string> targets(const FitJob& job) {
+    std::vector<std::string> all = job.garments;
+    for (const std::string& file : {job.output, job.picture, job.report})
+        if (!file.empty()) all.push_back(file);
+    if (!job.output.empty() && fs::exists(companion_path(job.pattern))) all.push_back(companion_path(job.output));
+    return all;
+}
+
+void refuse_faults(const Pattern& pattern) {
+    for (const Issue& issue : check(pattern))
+        if (issue.severity == Severity::error) throw InputError("the altered pattern cannot be sewn: " + issue.text);
+}
+
+} // namespace
+
+FitOutcome run_fit(const FitJob& job) {
+    refuse_targets({job.pattern, companion_path(job.pattern), job.spec, job.avatar}, targets(job));
+    std::vector<std::string> warnings;
+    const Pattern pattern = sound_pattern(job.pattern, warnings);
+    const FitSpec spec = read_fit_spec(job.spec, pattern);
+    const Body body = read_body(job.avatar, job.form, job.repair_avatar);
+    const Avatar avatar{body.mesh, smoothed_toward_core(body.mesh, 0.01)};
+    const DrapeInput input = input_of(pattern, job.fabric, job.edge_length);
+    const MovingFlat moving = moving_flat(pattern, flat_of(pattern, job.edge_length), spec.alterations);
+
+    const Pattern begun = altered(pattern, spec.alterations, spec.start);
+    const DrapeResult before = drape(stage(begun, moved_flat(moving, begun)), avatar, input.fabrics, job.drape);
+    if (before.status != DrapeStatus::converged)
+        throw InputError(job.pattern + " does not come to rest before it is altered (" + to_string(before.status) + "): " + before.where);
+    std::vector<FitGoal> goals;
+    for (const GoalSpec& goal : spec.goals) goals.push_back(goal_of(goal, before, body.mesh));
+
+    AlteredDrape drape(moving, spec.start, before, body.mesh, input.fabrics, job.drape, {fit_tolerance});
+    FitOptions options = spec.options;
+    Points x = before.state.positions;
+    options.anew = take_shape(goals, before, body.mesh, x);
+    options.max_seconds = job.max_seconds;
+    options.progress = job.progress;
+    FitOutcome outcome;
+    outcome.result = fit(drape, goals, spec.start, x, options);
+    const FitResult& r = outcome.result;
+    const Pattern now = altered(pattern, spec.alterations, r.amounts);
+    refuse_faults(now);
+
+    Json report{{"toile", TOILE_VERSION}, {"status", to_string(r.end)}};
+    if (!r.why.empty()) report["why"] = r.why;
+    report["optimiser"] = to_string(r.optimiser);
+    report["goals"] = goals_json(goals, r);
+    report["alterations"] = alterations_json(moving, r);
+    report["edges"] = edges_json(pattern, now);
+    report["seams"] = {{"kept", r.seams}, {"unequal_mm", 1e3 * r.unequal}};
+    report["evaluations"] = r.evaluations;
+    report["not_at_rest"] = r.not_at_rest;
+    report["rounds"] = r.rounds;
+    report["draped_anew"] = draped_anew(moving, now, avatar, input.fabrics, job.drape, goals, before.garment.node_count);
+    outcome.report = report.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+
+    if (!job.output.empty()) {
+        write_file(job.output, altered_pattern_text(job.pattern, pattern, now));
+        if (const std::string companion = companion_path(job.pattern); fs::exists(companion))
+            write_file(companion_path(job.output), read_file(companion, 64u << 20));
+    }
+    for (const std::string& path : job.garments) write_garment(path, drape.garment_at(r.amounts), r.x);
+    if (!job.picture.empty()) write_file(job.picture, altered_svg(pattern, now));
+    if (!job.report.empty()) write_file(job.report, outcome.report);
+    outcome.written = targets(job);
+    return outcome;
+}
+
+} // namespace toile

@@ -97,6 +97,7 @@ struct Search {
     const std::vector<FitGoal>& goals;
     const FitOptions& options;
     std::chrono::steady_clock::time_point started;
+    const Points& shape; ///< where the first round began
     VectorXd cost; ///< 1/m2, of the square of an amount
     FitResult& result;
 
@@ -120,13 +121,13 @@ struct Search {
                            [&](const FitGoal& g) { return miss(g, garment, x) <= share * g.tolerance; });
     }
 
-    /// The equilibrium, from the nearest that is known.
+    /// The equilibrium, from the nearest that is known, or from the shape: a fold that has popped would stay so.
     const Known* rest(const VectorXd& amounts) {
         const auto off = [&](const Known& k) { return cost_of(k.amounts - amounts); };
         const auto nearest =
             std::min_element(known.begin(), known.end(), [&](const Known& a, const Known& b) { return off(a) < off(b); });
         if (nearest->amounts == amounts) return &*nearest;
-        Points x = nearest->x;
+        Points x = options.anew ? shape : nearest->x;
         ++result.evaluations;
         try {
             if (!(drape.rest(amounts, x).residual <= at_rest)) return ++result.not_at_rest, nullptr;
@@ -253,7 +254,7 @@ FitResult fit(AlteredDrape& drape, const std::vector<FitGoal>& goals, const Vect
 
     double strictest = infinity;
     for (const FitGoal& g : goals) strictest = std::min(strictest, g.tolerance);
-    Search search{drape, goals, options, started, options.stay * cost_of(moving, start, strictest), r, {}};
+    Search search{drape, goals, options, started, at_rest_there, options.stay * cost_of(moving, start, strictest), r, {}};
 
     double last = infinity;
     OptimiseResult found;

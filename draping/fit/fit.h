@@ -12,8 +12,8 @@ namespace toile {
 struct FitOptions {
     std::optional<Optimiser> optimiser; ///< none: slsqp where seams have to stay equal, lbfgs otherwise
     int max_evaluations = 60;     ///< equilibria in all, >= 1
-    /// Every round begins where the first did, and friction holds the cloth there: for a shape that is told. Otherwise where the
-    /// last round ended.
+    /// Every equilibrium is looked for from where the first was, and friction holds the cloth there: for a shape that is told.
+    /// Otherwise from the nearest that is known, and friction holds it where the last round ended.
     bool anew = false;
     int max_rounds = 10;          ///< of friction: it is frozen in each and brought up to date after it, >= 1
     int round_evaluations = 12;   ///< equilibria of one, >= 1

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How a drape follows its pattern, on the skirt and the tee of examples/.
 #include "draping/fit/adjoint.h"
+#include "draping/fit/fit.h"
 #include "tests/support/fit_scene.h"
 
 #include <catch2/catch.hpp>
@@ -74,4 +75,29 @@ TEST_CASE("the adjoint gradient is that of the drape: skirt and tee, with contac
             CHECK(std::abs(gradient[k]) > 1e-3 * gradient.norm());
         }
     }
+}
+
+TEST_CASE("a skirt that was altered is found again from its drape") {
+    const Pattern pattern = example_pattern("skirt");
+    std::vector<Alteration> alterations = of_the_skirt(pattern);
+    alterations.erase(alterations.begin()); // what is left keeps seams equal
+    FitScene s = fit_scene(pattern, alterations, 0.04);
+    const Eigen::VectorXd wrong = (Eigen::VectorXd(5) << 0.02, -0.015, 0.004, 0.01, -0.01).finished();
+    const Points target = s.drape.state.positions;
+    const Pattern begun = altered(pattern, alterations, wrong);
+    const DrapeResult before = drape(stage(begun, moved_flat(s.moving, begun)), {s.body, smoothed_toward_core(s.body, 0.01)}, s.fabrics, s.options);
+    REQUIRE(before.status == DrapeStatus::converged);
+    AlteredDrape altered_drape(s.moving, wrong, before, s.body, s.fabrics, s.options, {1e-7});
+    FitOptions options;
+    options.anew = true;
+    const FitResult r = fit(altered_drape, {{"shape", shape_goal(before.garment, target), 1e-3}}, wrong, target, options);
+    INFO(r.why);
+    CHECK(r.end == FitEnd::met);
+    CHECK(r.before[0] > 3e-3);
+    CHECK(r.after[0] < 1e-3);
+    CHECK(r.unequal < 2e-5);
+    CHECK(r.amounts.cwiseAbs().maxCoeff() < 0.5 * wrong.cwiseAbs().maxCoeff());
+    // The same again, to the last bit.
+    AlteredDrape twin(s.moving, wrong, before, s.body, s.fabrics, s.options, {1e-7});
+    CHECK(fit(twin, {{"shape", shape_goal(before.garment, target), 1e-3}}, wrong, target, options).amounts == r.amounts);
 }

@@ -155,6 +155,7 @@ FitOutcome run_fit(const FitJob& job) {
     const Avatar avatar{body.mesh, smoothed_toward_core(body.mesh, 0.01)};
     const DrapeInput input = input_of(pattern, job.fabric, job.edge_length);
     const MovingFlat moving = moving_flat(pattern, flat_of(pattern, job.edge_length), spec.alterations);
+    refuse_fit(moving, spec.start, spec.options);
 
     const Pattern begun = altered(pattern, spec.alterations, spec.start);
     const DrapeResult before = drape(stage(begun, moved_flat(moving, begun)), avatar, input.fabrics, job.drape);

@@ -5,6 +5,7 @@
 #include "geometry/text.h"
 #include "patterns/check.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
 #include <algorithm>
@@ -26,7 +27,8 @@ constexpr double independent = 1e-6;  // of the largest slope: seams below follo
 constexpr double at_rest = 1e-3;      // residual beyond which an equilibrium is none
 constexpr double comfortable = 0.5;   // of its tolerance, with which a goal ends the search
 constexpr double at_bound = 1e-3;     // of the room between bounds
-constexpr double gain = 0.01;         // of the value, for which another round is begun
+constexpr double gain = 0.01;         // of the value, for which another round is begun, or another step made
+constexpr double least_stay = 1e-6;
 
 /// What the amounts cost by themselves: for a unit of cost an alteration moves the cloth's points by a tolerance, in their
 /// root mean square. 1/m2.
@@ -98,7 +100,7 @@ struct Search {
     const FitOptions& options;
     std::chrono::steady_clock::time_point started;
     const Points& shape; ///< where the first round began
-    VectorXd cost; ///< 1/m2, of the square of an amount
+    VectorXd cost; ///< 1/m2, of the square of an amount, before it is weighed by options.stay
     FitResult& result;
 
     struct Known {
@@ -112,7 +114,7 @@ struct Search {
     double cost_of(const VectorXd& amounts) const { return cost.dot(amounts.cwiseAbs2()); }
 
     double whole_value(const VectorXd& amounts, const Points& x) const {
-        return value(goals, drape.garment_at(amounts), x) + cost_of(amounts);
+        return value(goals, drape.garment_at(amounts), x) + options.stay * cost_of(amounts);
     }
 
     bool meets(const VectorXd& amounts, const Points& x, double share) const {
@@ -145,7 +147,7 @@ struct Search {
         if (gradient && !met) {
             const Points x = at->x;
             if (!fit_gradient(drape, goals, amounts, x, *gradient)) return infinity;
-            *gradient += 2 * cost.cwiseProduct(amounts);
+            *gradient += 2 * options.stay * cost.cwiseProduct(amounts);
         }
         if (options.progress && !options.progress(result.evaluations, at->value)) stopped = true;
         return at->value;
@@ -156,6 +158,17 @@ struct Search {
     bool over() const { return met || stopped || spent(); }
 };
 
+/// What bends downward, as a girth may, is left out; what no goal feels is not quite flat.
+Eigen::MatrixXd curvature_of(Search& search, const VectorXd& start) {
+    Eigen::MatrixXd found = Eigen::MatrixXd::Zero(start.size(), start.size());
+    fit_curvature(search.drape, search.goals, start, search.known[0].x, found);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> bent(found);
+    const VectorXd upward = bent.eigenvalues().cwiseMax(0);
+    found = bent.eigenvectors() * upward.asDiagonal() * bent.eigenvectors().transpose();
+    found.diagonal() += 2 * std::max(search.options.stay, least_stay) * search.cost;
+    return found;
+}
+
 OptimiseProblem problem_of(Search& search, const std::vector<int>& seams, const VectorXd& start) {
     const MovingFlat& moving = search.drape.moving();
     OptimiseProblem p;
@@ -164,8 +177,7 @@ OptimiseProblem problem_of(Search& search, const std::vector<int>& seams, const 
         p.low[k] = moving.alterations[k].low;
         p.high[k] = moving.alterations[k].high;
     }
-    if (!fit_curvature(search.drape, search.goals, start, search.known[0].x, p.curvature)) p.curvature.setZero(start.size(), start.size());
-    p.curvature.diagonal() += 2 * search.cost;
+    p.curvature = curvature_of(search, start);
     p.value = [&search](const VectorXd& amounts, VectorXd* g) { return search.evaluate(amounts, g); };
     p.stop = [&search] { return search.over(); };
     for (const int s : seams)
@@ -188,6 +200,32 @@ void refuse(const MovingFlat& moving, const VectorXd& start) {
             throw std::invalid_argument(text("alteration \"%s\" starts at %.4g mm, outside of its bounds %.4g and %.4g mm",
                                              a.name.c_str(), 1e3 * at, 1e3 * a.low, 1e3 * a.high));
     }
+}
+
+/// The seams that alterations can make unequal, those of them that have to be told to the optimiser, and that.
+struct Stakes {
+    std::vector<int> all, told;
+    Optimiser optimiser = Optimiser::slsqp;
+};
+
+Stakes stakes_of(const MovingFlat& moving, const VectorXd& start, const FitOptions& options) {
+    refuse(moving, start);
+    VectorXd aside = start;
+    for (std::size_t k = 0; k < moving.alterations.size(); ++k) // where symmetry hides no slope
+        aside[Eigen::Index(k)] += 0.01 * (moving.alterations[k].high - moving.alterations[k].low);
+    Stakes s;
+    Eigen::MatrixXd slopes;
+    s.all = seams_at_stake(moving, aside, slopes);
+    s.told = independent_of(s.all, slopes);
+    if (Eigen::Index(s.told.size()) >= start.size())
+        throw std::invalid_argument(text("%d seams whose sides have to stay as long as each other leave %d alterations nothing to "
+                                         "choose; alter both sides of each alike",
+                                         int(s.told.size()), int(start.size())));
+    s.optimiser = options.optimiser.value_or(s.told.empty() ? Optimiser::lbfgs : Optimiser::slsqp);
+    if (s.optimiser == Optimiser::lbfgs && !s.told.empty())
+        throw std::invalid_argument("lbfgs keeps bounds alone, and " + moving.drawn.seams[s.told[0]].name +
+                                    " has to keep the lengths of its sides: slsqp or cobyla");
+    return s;
 }
 
 void note_bounds(const MovingFlat& moving, FitResult& r) {
@@ -228,33 +266,22 @@ double seam_difference(const Pattern& drawn, const Pattern& pattern, int seam) {
     return now.a - before.a / before.b * now.b;
 }
 
+void refuse_fit(const MovingFlat& moving, const VectorXd& start, const FitOptions& options) { stakes_of(moving, start, options); }
+
 FitResult fit(AlteredDrape& drape, const std::vector<FitGoal>& goals, const VectorXd& start, const Points& at_rest_there,
               const FitOptions& options) {
     const MovingFlat& moving = drape.moving();
-    refuse(moving, start);
     const auto started = std::chrono::steady_clock::now();
     FitResult r;
     r.amounts = start;
     r.x = at_rest_there;
-    Eigen::MatrixXd slopes;
-    VectorXd aside = start;
-    for (std::size_t k = 0; k < moving.alterations.size(); ++k) // where symmetry hides no slope
-        aside[Eigen::Index(k)] += 0.01 * (moving.alterations[k].high - moving.alterations[k].low);
-    const std::vector<int> stakes = seams_at_stake(moving, aside, slopes);
-    const std::vector<int> seams = independent_of(stakes, slopes);
-    r.seams = int(stakes.size());
-    if (Eigen::Index(seams.size()) >= start.size())
-        throw std::invalid_argument(text("%d seams whose sides have to stay as long as each other leave %d alterations nothing to "
-                                         "choose; alter both sides of each alike",
-                                         int(seams.size()), int(start.size())));
-    r.optimiser = options.optimiser.value_or(seams.empty() ? Optimiser::lbfgs : Optimiser::slsqp);
-    if (r.optimiser == Optimiser::lbfgs && !seams.empty())
-        throw std::invalid_argument("lbfgs keeps bounds alone, and " + moving.drawn.seams[seams[0]].name +
-                                    " has to keep the lengths of its sides: slsqp or cobyla");
+    const Stakes stakes = stakes_of(moving, start, options);
+    r.seams = int(stakes.all.size());
+    r.optimiser = stakes.optimiser;
 
     double strictest = infinity;
     for (const FitGoal& g : goals) strictest = std::min(strictest, g.tolerance);
-    Search search{drape, goals, options, started, at_rest_there, options.stay * cost_of(moving, start, strictest), r, {}};
+    Search search{drape, goals, options, started, at_rest_there, cost_of(moving, start, strictest), r, {}};
 
     double last = infinity;
     OptimiseResult found;
@@ -271,10 +298,10 @@ FitResult fit(AlteredDrape& drape, const std::vector<FitGoal>& goals, const Vect
         OptimiseOptions o;
         o.optimiser = r.optimiser;
         o.max_evaluations = std::clamp(options.max_evaluations - r.evaluations, 1, options.round_evaluations);
-        o.value_tolerance = 1e-2;
+        o.value_tolerance = gain;
         o.equal_within = options.equal_within / seam_unit;
         search.met = false;
-        found = optimise(problem_of(search, seams, r.amounts), o);
+        found = optimise(problem_of(search, stakes.told, r.amounts), o);
         if (found.end == OptimiseEnd::failed) break;
         r.amounts = found.at;
         r.x = search.rest(r.amounts)->x;
@@ -284,7 +311,7 @@ FitResult fit(AlteredDrape& drape, const std::vector<FitGoal>& goals, const Vect
     for (const FitGoal& g : goals) r.after.push_back(miss(g, drape.garment_at(r.amounts), r.x));
     const Pattern pattern = altered(moving.drawn, moving.alterations, r.amounts);
     std::string worst;
-    for (const int s : stakes)
+    for (const int s : stakes.all)
         if (const double off = std::abs(seam_difference(moving.drawn, pattern, s)); off > r.unequal) {
             r.unequal = off;
             worst = moving.drawn.seams[s].name;

@@ -48,8 +48,12 @@ struct FitResult {
 /// How far the sides of a seam of an altered pattern are from the ratio they have as drawn, m of side a.
 double seam_difference(const Pattern& drawn, const Pattern& pattern, int seam);
 
-/// From `start`, amounts within their bounds, at rest at drape.state. Throws std::invalid_argument: bounds, a start outside of
-/// them, seams that leave nothing to alter; std::runtime_error when a goal is not a number.
+/// Throws what fit() would throw whatever the drape, before there is one: std::invalid_argument for bounds, a start outside of
+/// them, seams that leave nothing to alter, an optimiser that cannot keep them.
+void refuse_fit(const MovingFlat& moving, const Eigen::VectorXd& start, const FitOptions& options);
+
+/// From `start`, amounts within their bounds, at rest at drape.state. Throws as refuse_fit(), and std::runtime_error when a goal
+/// is not a number.
 FitResult fit(AlteredDrape& drape, const std::vector<FitGoal>& goals, const Eigen::VectorXd& start, const Points& at_rest,
               const FitOptions& options = {});
 

@@ -17,6 +17,15 @@ constexpr std::size_t most_alterations = 500, most_goals = 100, most_members = 1
 
 double length_in(const JsonView& v) { return mm * v.number(-most_length, most_length); }
 
+/// Names stand in sentences.
+std::string name_in(const JsonView& v) {
+    const std::string name = v.string();
+    const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+    if (name.empty() || name.size() > 80 || std::any_of(name.begin(), name.end(), is_control))
+        v.fail("a name of 1 to 80 characters on one line");
+    return name;
+}
+
 int panel_in(const JsonView& v, const Pattern& pattern) {
     const std::string name = v.string();
     for (int p = 0; p < int(pattern.panels.size()); ++p)
@@ -64,7 +73,7 @@ Alteration alteration_in(const JsonView& v, const Pattern& pattern) {
     v.expect_keys({"name", "low", "high", "start", "moves", "seam", "panel", "lengthen", "edge_outward", "dart", "vertex", "edge",
                    "control", "direction", "by"});
     Alteration a;
-    a.name = v.at("name").string();
+    a.name = name_in(v.at("name"));
     a.low = length_in(v.at("low"));
     a.high = length_in(v.at("high"));
     if (!v.has("moves")) {
@@ -144,7 +153,7 @@ GoalSpec goal_in(const JsonView& v, const Pattern& pattern, const std::filesyste
         }
     }
     constexpr const char* kinds[] = {"shape", "level", "ease", "stretch"};
-    goal.name = v.has("name") ? v.at("name").string() : kinds[int(goal.kind)];
+    goal.name = v.has("name") ? name_in(v.at("name")) : kinds[int(goal.kind)];
     return goal;
 }
 

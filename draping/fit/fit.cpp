@@ -297,7 +297,8 @@ FitResult fit(AlteredDrape& drape, const std::vector<FitGoal>& goals, const Vect
         last = now;
         OptimiseOptions o;
         o.optimiser = r.optimiser;
-        o.max_evaluations = std::clamp(options.max_evaluations - r.evaluations, 1, options.round_evaluations);
+        const int left = std::max(1, options.max_evaluations - r.evaluations);
+        o.max_evaluations = o.optimiser == Optimiser::cobyla ? left : std::min(left, options.round_evaluations);
         o.value_tolerance = gain;
         o.equal_within = options.equal_within / seam_unit;
         search.met = false;

@@ -16,7 +16,7 @@ struct FitOptions {
     /// Otherwise from the nearest that is known, and friction holds it where the last round ended.
     bool anew = false;
     int max_rounds = 10;          ///< of friction: it is frozen in each and brought up to date after it, >= 1
-    int round_evaluations = 12;   ///< equilibria of one, >= 1
+    int round_evaluations = 12;   ///< equilibria of one, >= 1; cobyla, which learns slowly, has all in the first
     double max_seconds = 1e9;     ///< wall time
     double equal_within = 1e-5;   ///< m, by which the sides of a seam may differ beyond their ease as drawn
     /// What an alteration costs: this times the square of what it moves the cloth by over the tolerance of the strictest goal.

@@ -106,6 +106,8 @@ TEST_CASE("fit: what cannot be used is refused in a sentence") {
     refused(R"({"alterations": [{"name": "a", "panel": "front", "edge": 1, "control": 1, "direction": [0, 1], "low": -5, "high": 5}])" +
                 goals,
             "edge 1 of panel front has no control point 1");
+    refused(R"({"alterations": [{"name": "a\nb", "panel": "front", "vertex": 0, "direction": [0, 1], "low": -5, "high": 5}])" + goals,
+            "a name of 1 to 80 characters on one line");
     refused(spec(""), "goals");
     CHECK(run_toile({"fit", skirt, "--spec", folder / "fit.json"}).code == 1); // nothing to write
 }

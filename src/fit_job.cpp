@@ -150,6 +150,9 @@ FitOutcome run_fit(const FitJob& job) {
     refuse_targets({job.pattern, companion_path(job.pattern), job.spec, job.avatar}, targets(job));
     std::vector<std::string> warnings;
     const Pattern pattern = sound_pattern(job.pattern, warnings);
+    if (const Panel* panel = moulded_panel(pattern))
+        throw InputError("panel " + panel->name + " keeps the triangles of " + panel->rest->file +
+                         ", which alterations of outlines do not reach; toile fit expects flat panels");
     const FitSpec spec = read_fit_spec(job.spec, pattern);
     const Body body = read_body(job.avatar, job.form, job.repair_avatar);
     const Avatar avatar{body.mesh, smoothed_toward_core(body.mesh, 0.01)};

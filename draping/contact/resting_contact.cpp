@@ -55,6 +55,7 @@ void RestingContact::begin_as_part(const RestingContact& whole, const std::vecto
     arrivals_ = whole.arrivals_;
     near_rest_ = whole.near_rest_;
     rising_ = whole.rising_;
+    frozen_ = whole.frozen_;
     residual_ = whole.residual_;
     renewed_at_ = whole.renewed_at_;
 }

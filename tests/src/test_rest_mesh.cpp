@@ -115,6 +115,10 @@ TEST_CASE("who cannot take a rest mesh says so") {
     const Run again = run_toile({"drape", pattern, "--avatar", body, "--from", body, "-o", out});
     CHECK(again.code == 2);
     CHECK_THAT(again.err, Contains("panel crown has a rest mesh"));
+    write_file(folder / "fit.json", "{}");
+    const Run fit = run_toile({"fit", pattern, "--avatar", body, "--spec", folder / "fit.json", "-o", folder / "fitted.json"});
+    CHECK(fit.code == 2);
+    CHECK_THAT(fit.err, Contains("panel crown keeps the triangles of") && Contains("flat panels"));
     CHECK(run_toile({"check", pattern}).code == 0);
 
     std::string companion = read_file(folder / "hat.toile.json", 1 << 20);

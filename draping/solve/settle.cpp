@@ -24,7 +24,7 @@ constexpr double sufficient = 1e-4;   // of the decrease that the slope promises
 constexpr double static_time_step = 100; // s: from there on steps are Newton's
 constexpr double most_time_step = 1e6;   // s: no mass is left, but some steps shorter a loose piece has one again
 constexpr double too_stiff = 1.2;        // gain over what was promised from which longer steps are looked for
-constexpr int relax_every = 3;       // steps of the whole, between those of a part
+constexpr int relax_every = 2;       // steps of the whole, between those of a part
 constexpr double tail_time_step = 1; // s: before that the state is still travelling, however small the forces
 
 double longest(const VectorXd& dx) {

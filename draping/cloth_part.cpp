@@ -59,9 +59,10 @@ std::vector<char> moved_most(const std::vector<Triangle>& triangles, const Eigen
     return moved;
 }
 
-double farthest(const Points& from, const Points& to) {
+/// How far a node of the part has gone at most from where the whole has it, m.
+double farthest(const ClothPart& part, const Points& whole, const Points& at) {
     double most = 0;
-    for (std::size_t k = 0; k < from.size(); ++k) most = std::max(most, (to[k] - from[k]).squaredNorm());
+    for (std::size_t k = 0; k < at.size(); ++k) most = std::max(most, (at[k] - whole[part.nodes[k]]).squaredNorm());
     return std::sqrt(most);
 }
 
@@ -103,16 +104,15 @@ int relax_part(ClothProblem& whole, Points& x, const Eigen::VectorXd& step, doub
     if (std::count(moving.begin(), moving.end(), 1) > most_of_all * double(x.size())) return 0;
 
     const ClothPart part = part_of(whole, x, moving, travel);
-    Points start;
-    for (const int i : part.nodes) start.push_back(x[i]);
-    Points at = start;
+    Points at;
+    for (const int i : part.nodes) at.push_back(x[i]);
     SettleOptions o;
     o.tolerance = std::max(options.tolerance, gain * residual);
     o.max_iterations = most_iterations;
     o.exact_below = options.exact_below;
     o.time_step = 1e6; // what stands still round it holds it: no mass is needed
     o.max_step = step_share * travel;
-    o.progress = [&](int, double) { return farthest(start, at) < far * travel; };
+    o.progress = [&](int, double) { return farthest(part, x, at) < far * travel; };
     Cholesky factor;
     const SettleResult r = settle(*part.problem, at, factor, o);
     for (std::size_t k = 0; k < at.size(); ++k) x[part.nodes[k]] = at[k];

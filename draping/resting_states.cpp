@@ -6,30 +6,15 @@
 #include "draping/solve/settle.h"
 #include "sewing/mesh_grain.h"
 
-#include <numeric>
-
 namespace toile {
 
 Garment moulded_cloth(const std::vector<Triangle>& triangles, const Points& x, const Points& warp) {
-    Garment g;
-    g.triangles = triangles;
-    g.panel_of_triangle.assign(triangles.size(), 0);
-    g.panel_names = {"cloth"};
-    g.panel_fabrics = {""};
-    g.panel_layers = {0};
-    g.uv.assign(x.size(), Vec2::Zero());
-    g.panel_of_vertex.assign(x.size(), 0);
-    g.node_count = int(x.size());
-    g.node_of_vertex.resize(x.size());
-    std::iota(g.node_of_vertex.begin(), g.node_of_vertex.end(), 0);
-    g.edges = make_edges(triangles, g.node_count);
-    g.seam_edge.assign(g.edges.size(), false);
-    g.eased_triangle.assign(triangles.size(), false);
-    g.rest.angles.assign(g.edges.size(), 0.0);
+    std::vector<Mat2> edges;
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         const Triangle& n = triangles[t];
-        g.rest.edges.push_back(edges_in_grain(x[n[1]] - x[n[0]], x[n[2]] - x[n[0]], warp[t]));
+        edges.push_back(edges_in_grain(x[n[1]] - x[n[0]], x[n[2]] - x[n[0]], warp[t]));
     }
+    Garment g = mesh_garment(triangles, int(x.size()), std::move(edges));
     g.rest = moulded(g, x);
     return g;
 }

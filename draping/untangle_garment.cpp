@@ -11,6 +11,7 @@
 #include "geometry/parallel.h"
 #include "geometry/solid.h"
 #include "geometry/text.h"
+#include "sewing/mesh_grain.h"
 
 #include <algorithm>
 #include <chrono>
@@ -62,23 +63,9 @@ Mat2 flat_sides(const Vec3& a, const Vec3& b, const Vec3& c) {
 
 /// The surface as a garment of one panel whose rest shape it is.
 Garment at_rest(const TriMesh& mesh, const std::vector<Stitch>& stitches) {
-    Garment g;
-    const int n = int(mesh.points.size());
-    g.node_count = n;
-    g.uv.assign(n, Vec2::Zero());
-    g.panel_of_vertex.assign(n, 0);
-    for (int i = 0; i < n; ++i) g.node_of_vertex.push_back(i);
-    g.triangles = mesh.triangles;
-    g.panel_of_triangle.assign(mesh.triangles.size(), 0);
-    g.panel_names = {"cloth"};
-    g.panel_fabrics.resize(1);
-    g.panel_layers.resize(1);
-    for (const auto& [a, b, c] : mesh.triangles)
-        g.rest.edges.push_back(flat_sides(mesh.points[a], mesh.points[b], mesh.points[c]));
-    g.edges = make_edges(mesh.triangles, n);
-    g.rest.angles.assign(g.edges.size(), 0.0);
-    g.seam_edge.assign(g.edges.size(), false);
-    g.eased_triangle.assign(mesh.triangles.size(), false);
+    std::vector<Mat2> edges;
+    for (const auto& [a, b, c] : mesh.triangles) edges.push_back(flat_sides(mesh.points[a], mesh.points[b], mesh.points[c]));
+    Garment g = mesh_garment(mesh.triangles, int(mesh.points.size()), std::move(edges));
     for (const Stitch& s : stitches)
         if (s.r > 0 && s.r < 1 && stitch_gap(s, mesh.points) < closed_gap) g.stitches.push_back(s);
     return g;

@@ -4,6 +4,7 @@
 #include "geometry/parallel.h"
 #include "geometry/text.h"
 #include "src/cut_job.h"
+#include "src/options.h"
 #include "src/quantity.h"
 
 #include <CLI/CLI.hpp>
@@ -68,11 +69,7 @@ void add_cut(CLI::App& app, Command& chosen) {
     file("--surface", job.surface, "Mesh to write of the pieces where they were cut, .obj or .glb");
     file("--preview", job.preview, "PNG to write: the strain left, from white to red");
     file("--report", job.report, "Report to write, JSON as in docs/cut.md");
-    command.add_option("--threads", a->threads, "Threads to use (default 0: all); the result does not depend on it")
-        ->check(CLI::Range(0, 1024).description(""))
-        ->type_name("COUNT");
-    command.add_flag("--quiet", a->quiet, "Print errors only");
-    command.add_flag("--json", a->json, "Print the report instead of a summary");
+    add_run_options(command, a->threads, a->quiet, a->json);
     command.callback([a, &chosen] { chosen = [a](const Console& console) { return cut_command(*a, console); }; });
 }
 

@@ -82,13 +82,7 @@ void refuse_useless(const DrapeArguments& a) {
     if (a.job.repair_avatar && a.job.avatar.empty() && a.job.avatar_sequence.empty())
         throw CommandLineError("--repair-avatar needs --avatar; the built-in form is closed");
     refuse_useless_method(a);
-    for (const std::string& path : a.job.garments) {
-        try {
-            garment_format(path);
-        } catch (const std::exception& error) {
-            throw CommandLineError(error.what());
-        }
-    }
+    refuse_formats(a.job.garments);
     refuse_useless_frames(a);
 }
 
@@ -324,13 +318,7 @@ void add_drape(CLI::App& app, Command& chosen) {
              "Memory before which the state reached is written");
     command.add_flag("--with-avatar", job.with_avatar, "Write the body into the garment files too");
     add_unit_and_up(command, job.write);
-    command
-        .add_option("--threads", a->threads,
-                    "Threads to use (default 0: all); the result does not depend on it")
-        ->check(CLI::Range(0, 1024).description(""))
-        ->type_name("COUNT");
-    command.add_flag("--quiet", a->quiet, "Print errors only");
-    command.add_flag("--json", a->json, "Print the report instead of a summary");
+    add_run_options(command, a->threads, a->quiet, a->json);
     command.callback(
         [a, &chosen] { chosen = [a](const Console& console) { return drape_command(*a, console); }; });
 }

@@ -3,7 +3,6 @@
 
 #include "geometry/parallel.h"
 #include "geometry/text.h"
-#include "io/write_garment.h"
 #include "src/fit_job.h"
 #include "src/options.h"
 #include "src/progress.h"
@@ -29,13 +28,7 @@ void refuse_useless(const FitArguments& a) {
     if (job.output.empty() && job.garments.empty() && job.picture.empty() && job.report.empty() && !a.json)
         throw CommandLineError("there is nothing to write: name a file with -o, --garment, --picture or --report");
     if (job.repair_avatar && job.avatar.empty()) throw CommandLineError("--repair-avatar needs --avatar; the built-in form is closed");
-    for (const std::string& path : job.garments) {
-        try {
-            garment_format(path);
-        } catch (const std::exception& error) {
-            throw CommandLineError(error.what());
-        }
-    }
+    refuse_formats(job.garments);
 }
 
 void summarise(std::ostream& out, const FitOutcome& outcome) {
@@ -102,11 +95,7 @@ void add_fit(CLI::App& app, Command& chosen) {
         ->type_name("FILE");
     file("--picture", job.picture, "Picture to write, SVG: old and new outlines at full size");
     file("--report", job.report, "Report to write, JSON as in docs/fit.md");
-    command.add_option("--threads", a->threads, "Threads to use (default 0: all); the result does not depend on it")
-        ->check(CLI::Range(0, 1024).description(""))
-        ->type_name("COUNT");
-    command.add_flag("--quiet", a->quiet, "Print errors only");
-    command.add_flag("--json", a->json, "Print the report instead of a summary");
+    add_run_options(command, a->threads, a->quiet, a->json);
     command.callback([a, &chosen] { chosen = [a](const Console& console) { return fit_command(*a, console); }; });
 }
 

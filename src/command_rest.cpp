@@ -3,7 +3,6 @@
 
 #include "geometry/parallel.h"
 #include "geometry/text.h"
-#include "io/write_garment.h"
 #include "src/moulded_job.h"
 #include "src/options.h"
 #include "src/rest_job.h"
@@ -36,12 +35,7 @@ void refuse_useless(const RestArguments& a) {
     if (!a.fabric.empty() && job.length_weight > 0)
         throw CommandLineError("--fabric and --length-weight exclude each other");
     if (job.all_states && job.output.empty()) throw CommandLineError("--all-states writes meshes beside that of -o, which is not named");
-    if (job.output.empty()) return;
-    try {
-        garment_format(job.output);
-    } catch (const std::exception& error) {
-        throw CommandLineError(error.what());
-    }
+    if (!job.output.empty()) refuse_formats({job.output});
 }
 
 void summarise(std::ostream& out, const RestOutcome& outcome) {
@@ -212,11 +206,7 @@ void add_rest(CLI::App& app, Command& chosen) {
     file("--rest", job.rest, "Rest shape to write, JSON as --data");
     file("--preview", job.preview, "PNG to write: how little what was asked for fits, from white to red");
     file("--report", job.report, "Report to write, JSON as in docs/rest.md");
-    command.add_option("--threads", a->threads, "Threads to use (default 0: all); the result does not depend on it")
-        ->check(CLI::Range(0, 1024).description(""))
-        ->type_name("COUNT");
-    command.add_flag("--quiet", a->quiet, "Print errors only");
-    command.add_flag("--json", a->json, "Print the report instead of a summary");
+    add_run_options(command, a->threads, a->quiet, a->json);
     command.callback([a, &chosen] { chosen = [a](const Console& console) { return rest_command(*a, console); }; });
 }
 

@@ -3,7 +3,7 @@
 
 #include "geometry/parallel.h"
 #include "geometry/text.h"
-#include "io/write_garment.h"
+#include "src/options.h"
 #include "src/progress.h"
 #include "src/quantity.h"
 #include "src/untangle_job.h"
@@ -28,13 +28,7 @@ void refuse_useless(const UntangleArguments& a) {
         throw CommandLineError("there is nothing to write: name a file with -o or --report");
     if (a.job.repair_avatar && a.job.avatar.empty())
         throw CommandLineError("--repair-avatar needs --avatar");
-    for (const std::string& path : a.job.garments) {
-        try {
-            garment_format(path);
-        } catch (const std::exception& error) {
-            throw CommandLineError(error.what());
-        }
-    }
+    refuse_formats(a.job.garments);
 }
 
 void print_faults(std::ostream& out, const char* when, const nlohmann::json& i) {
@@ -102,11 +96,7 @@ void add_untangle(CLI::App& app, Command& chosen) {
                "Distance below which contact acts; what is nearer than a tenth of it is moved apart as well");
     add_duration(command, "max-seconds", job.untangle.max_seconds, 0.001, 1e9,
                  "Time after which the best state reached is written");
-    command.add_option("--threads", a->threads, "Threads to use (default 0: all); the result does not depend on it")
-        ->check(CLI::Range(0, 1024).description(""))
-        ->type_name("COUNT");
-    command.add_flag("--quiet", a->quiet, "Print errors only");
-    command.add_flag("--json", a->json, "Print the report instead of a summary");
+    add_run_options(command, a->threads, a->quiet, a->json);
     command.callback(
         [a, &chosen] { chosen = [a](const Console& console) { return untangle_command(*a, console); }; });
 }

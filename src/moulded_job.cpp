@@ -11,8 +11,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-
 namespace toile {
 namespace {
 
@@ -38,18 +36,6 @@ Points warp_of(const ReadGarment& read) {
     return warp;
 }
 
-Json states_json(const Prescribed& shape, const RestingStates& states) {
-    Json all = Json::array();
-    for (const FoundShape& f : states.found)
-        all.push_back({{"energy", f.shape.energy},
-                       {"mirror_of", f.mirror < 0 ? Json() : Json(f.mirror + 1)},
-                       {"length_off_max", largest_stretch(shape, f.shape.x)},
-                       {"angle_off_max", largest_turn(shape, f.shape.x)},
-                       {"residual", f.shape.gradient},
-                       {"iterations", f.shape.iterations}});
-    return all;
-}
-
 } // namespace
 
 MouldedOutcome run_moulded(const MouldedJob& job) {
@@ -66,14 +52,10 @@ MouldedOutcome run_moulded(const MouldedJob& job) {
     report["points"] = shape.point_count;
     report["starts"] = outcome.states.starts;
     report["unsettled"] = outcome.states.unsettled;
-    report["states"] = states_json(shape, outcome.states);
+    report["states"] = states_json(shape, found, "residual");
     outcome.report = report.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 
-    const std::size_t wanted = job.output.empty() ? 0 : job.all_states ? found.size() : 1;
-    for (std::size_t k = 0; k < std::min(wanted, found.size()); ++k) {
-        write_moved(numbered_state(job.output, int(k)), job.shape, read, found[k].shape.x);
-        if (k > 0) outcome.written.push_back(numbered_state(job.output, int(k)));
-    }
+    write_states(job.output, job.all_states, job.shape, read, found, outcome.written);
     if (!job.preview.empty()) write_preview(job.preview, read.garment, found.empty() ? read.x : found[0].shape.x, {});
     if (!job.report.empty()) write_file(job.report, outcome.report);
     return outcome;

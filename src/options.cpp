@@ -2,6 +2,7 @@
 #include "src/options.h"
 
 #include "io/read_fabric.h"
+#include "src/exit_code.h"
 #include "src/quantity.h"
 
 #include <CLI/CLI.hpp>
@@ -33,6 +34,24 @@ void add_unit_and_up(CLI::App& command, WriteOptions& write) {
             "Up axis of written OBJ files (default y; GLB is y up by its standard)")
         ->check(CLI::IsMember({"y", "z"}).description(""))
         ->type_name("y|z");
+}
+
+void add_run_options(CLI::App& command, int& threads, bool& quiet, bool& json) {
+    command.add_option("--threads", threads, "Threads to use (default 0: all); the result does not depend on it")
+        ->check(CLI::Range(0, 1024).description(""))
+        ->type_name("COUNT");
+    command.add_flag("--quiet", quiet, "Print errors only");
+    command.add_flag("--json", json, "Print the report instead of a summary");
+}
+
+void refuse_formats(const std::vector<std::string>& garments) {
+    for (const std::string& path : garments) {
+        try {
+            garment_format(path);
+        } catch (const std::exception& error) {
+            throw CommandLineError(error.what());
+        }
+    }
 }
 
 void add_fabric(CLI::App& command, std::string& fabric, const std::string& help) {

@@ -52,16 +52,29 @@ Prescribed read_data(const RestJob& job, const ReadGarment& read) {
     return data;
 }
 
-Json states_json(const Prescribed& data, const std::vector<FoundShape>& states) {
-    Json all = Json::array();
-    for (const FoundShape& f : states)
-        all.push_back({{"energy", f.shape.energy},
-                       {"mirror_of", f.mirror < 0 ? Json() : Json(f.mirror + 1)},
-                       {"length_off_max", largest_stretch(data, f.shape.x)},
-                       {"angle_off_max", largest_turn(data, f.shape.x)},
-                       {"gradient", f.shape.gradient},
-                       {"iterations", f.shape.iterations}});
-    return all;
+/// name.obj, name-2.obj, name-3.obj ...
+std::string numbered(const std::string& path, int k) {
+    if (k == 0) return path;
+    const fs::path p(path);
+    return (p.parent_path() / p.stem()).string() + text("-%d", k + 1) + p.extension().string();
+}
+
+/// By how much x is off the lengths told at most, as a share, and off the angles, in degrees.
+double largest_stretch(const Prescribed& data, const Points& x) {
+    double most = 0;
+    for (int e = 0; e < data.edges.size(); ++e) {
+        const auto& [a, b] = data.edges.ends[e];
+        most = std::max(most, std::abs((x[b] - x[a]).norm() / data.length[e] - 1));
+    }
+    return most;
+}
+
+double largest_turn(const Prescribed& data, const Points& x) {
+    double most = 0;
+    const std::vector<double> angles = angles_of(data, x);
+    for (int e = 0; e < data.edges.size(); ++e)
+        if (data.edges.triangles_at(e) == 2) most = std::max(most, std::abs(angles[e] - data.angle[e]));
+    return most / degree;
 }
 
 Json misfit_json(const std::vector<double>& off, const ReadGarment& read) {
@@ -96,27 +109,25 @@ std::vector<std::string> targets(const RestJob& job) {
 
 } // namespace
 
-std::string numbered_state(const std::string& path, int k) {
-    if (k == 0) return path;
-    const fs::path p(path);
-    return (p.parent_path() / p.stem()).string() + text("-%d", k + 1) + p.extension().string();
+Json states_json(const Prescribed& data, const std::vector<FoundShape>& states, const char* left) {
+    Json all = Json::array();
+    for (const FoundShape& f : states)
+        all.push_back({{"energy", f.shape.energy},
+                       {"mirror_of", f.mirror < 0 ? Json() : Json(f.mirror + 1)},
+                       {"length_off_max", largest_stretch(data, f.shape.x)},
+                       {"angle_off_max", largest_turn(data, f.shape.x)},
+                       {left, f.shape.gradient},
+                       {"iterations", f.shape.iterations}});
+    return all;
 }
 
-double largest_stretch(const Prescribed& data, const Points& x) {
-    double most = 0;
-    for (int e = 0; e < data.edges.size(); ++e) {
-        const auto& [a, b] = data.edges.ends[e];
-        most = std::max(most, std::abs((x[b] - x[a]).norm() / data.length[e] - 1));
+void write_states(const std::string& path, bool all, const std::string& shape, const ReadGarment& read,
+                  const std::vector<FoundShape>& states, std::vector<std::string>& written) {
+    const std::size_t wanted = path.empty() ? 0 : all ? states.size() : 1;
+    for (std::size_t k = 0; k < std::min(wanted, states.size()); ++k) {
+        write_moved(numbered(path, int(k)), shape, read, states[k].shape.x);
+        if (k > 0) written.push_back(numbered(path, int(k)));
     }
-    return most;
-}
-
-double largest_turn(const Prescribed& data, const Points& x) {
-    double most = 0;
-    const std::vector<double> angles = angles_of(data, x);
-    for (int e = 0; e < data.edges.size(); ++e)
-        if (data.edges.triangles_at(e) == 2) most = std::max(most, std::abs(angles[e] - data.angle[e]));
-    return most / degree;
 }
 
 Prescribed measured_in(const std::string& path, const ReadGarment& read) {
@@ -155,14 +166,10 @@ RestOutcome run_rest(const RestJob& job) {
     report["angle_defect_sum"] = std::accumulate(defects.begin(), defects.end(), 0.0) / degree;
     report["rest"] = job.relax ? "relaxed" : "kept";
     report["frozen_energy"] = outcome.states.empty() ? Json() : Json(job.relax ? 0 : outcome.states[0].shape.energy);
-    report["states"] = states_json(data, outcome.states);
+    report["states"] = states_json(data, outcome.states, "gradient");
     report["second_opinion"] = outcome.states.empty() ? Json() : second_opinion(data, outcome.states[0]);
 
-    const std::size_t wanted = job.output.empty() ? 0 : job.all_states ? outcome.states.size() : 1;
-    for (std::size_t k = 0; k < std::min(wanted, outcome.states.size()); ++k) {
-        write_moved(numbered_state(job.output, int(k)), job.shape, read, outcome.states[k].shape.x);
-        if (k > 0) outcome.written.push_back(numbered_state(job.output, int(k)));
-    }
+    write_states(job.output, job.all_states, job.shape, read, outcome.states, outcome.written);
     if (!job.rest.empty() && !outcome.states.empty()) {
         Prescribed rest = data;
         if (job.relax) rest = measured(data.triangles, outcome.states[0].shape.x);

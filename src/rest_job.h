@@ -7,6 +7,8 @@
 
 #include "io/read_garment.h"
 
+#include <nlohmann/json_fwd.hpp>
+
 #include <string>
 #include <vector>
 
@@ -40,12 +42,13 @@ Prescribed measured_in(const std::string& path, const ReadGarment& read);
 /// The point at each number of the file, from 0; -1: none.
 std::vector<int> points_of_file(const ReadGarment& read);
 
-/// The file of state k, from 0: name.obj, name-2.obj, name-3.obj ...
-std::string numbered_state(const std::string& path, int k);
+/// The states as the report lists them; what is left of their gradient is under the key `left`.
+nlohmann::ordered_json states_json(const Prescribed& data, const std::vector<FoundShape>& states, const char* left);
 
-/// By how much x is off the lengths told at most, as a share, and off the angles, in degrees.
-double largest_stretch(const Prescribed& data, const Points& x);
-double largest_turn(const Prescribed& data, const Points& x);
+/// Writes the lowest state, or `all` of them, as the mesh `read` of the file `shape` moved there, to name.obj, name-2.obj,
+/// name-3.obj ...; `path` empty: none. Adds the files from the second on to `written`.
+void write_states(const std::string& path, bool all, const std::string& shape, const ReadGarment& read,
+                  const std::vector<FoundShape>& states, std::vector<std::string>& written);
 
 /// Does the job. Throws InputError (a sentence) when a file is refused or a target cannot be written, before anything is. No
 /// states: from no start was a minimum reached.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/contact/cloth_friction.h"
 
+#include <algorithm>
 #include <cmath>
 #include <tuple>
 
@@ -107,6 +108,10 @@ void match_ties(Friction& f, const std::vector<PairForce>& forces, const Points&
         ties.push_back(same ? gone_on(*old, f, now, before, x) : new_tie(now, x));
     }
     f.ties = std::move(ties);
+}
+
+void sort_ties(Friction& f) {
+    std::sort(f.ties.begin(), f.ties.end(), [](const Tie& a, const Tie& b) { return key(a) < key(b); });
 }
 
 void take_up(Friction& body, Friction& cloth, const Points& x, const std::vector<char>& pinned, Eigen::VectorXd& g) {

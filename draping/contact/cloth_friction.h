@@ -17,6 +17,9 @@ namespace toile {
 /// as a whole, and are anchored anew where they have slid far.
 void match_ties(Friction& friction, const std::vector<PairForce>& forces, const Points& before, const Points& x);
 
+/// Puts ties in the order that match_ties() keeps.
+void sort_ties(Friction& friction);
+
 /// Places the ties on the body (one per node) and of the cloth, whose normal forces are known, such that friction comes
 /// as near as it can to the forces `g` (3 per node, N), which a state at rest leaves when friction is left out; `g`
 /// receives what is left over. The state came to rest with the normals of a few steps before: a normal of the body

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/contact/contact.h"
 
+#include "geometry/solid.h"
+
 #include <algorithm>
 
 namespace toile {
@@ -91,15 +93,10 @@ TriMesh Contact::body_within_travel(const Points& x, const std::vector<char>& mo
         if (meets(boxes, body_, t))
             for (const int i : t) near[i] = 1;
     add_ring(body_triangles_, near);
-    TriMesh part;
-    std::vector<int> local(body_.size(), -1);
-    for (std::size_t v = 0; v < body_.size(); ++v) {
-        if (!near[v]) continue;
-        local[v] = int(part.points.size());
-        part.points.push_back(body_[v]);
-    }
+    TriMesh part{body_, {}};
     for (const Triangle& t : body_triangles_)
-        if (near[t[0]] && near[t[1]] && near[t[2]]) part.triangles.push_back({local[t[0]], local[t[1]], local[t[2]]});
+        if (near[t[0]] && near[t[1]] && near[t[2]]) part.triangles.push_back(t);
+    drop_unused_points(part);
     return part;
 }
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 namespace toile {
 
@@ -76,9 +75,7 @@ void RestingContact::end_part(const RestingContact& part, const std::vector<int>
         for (int& i : tie.point) i = nodes[i];
         cloth_friction.ties.push_back(tie);
     }
-    std::sort(cloth_friction.ties.begin(), cloth_friction.ties.end(), [](const Tie& a, const Tie& b) {
-        return std::tie(a.edge_edge, a.point) < std::tie(b.edge_edge, b.point);
-    });
+    sort_ties(cloth_friction);
     arrived_at_ = x;
 }
 

@@ -4,6 +4,7 @@
 #include "geometry/parallel.h"
 
 #include <algorithm>
+#include <span>
 
 namespace toile {
 
@@ -11,15 +12,9 @@ namespace {
 
 // The nodes an element couples: those of its patch and, where a border gives the patch fewer, of its compact
 // bending.
-struct ElementNodes {
-    int count = 0;
-    std::array<int, Patch::max_nodes> node{};
-};
-
-ElementNodes element_nodes(const Sheet& sheet, int t) {
-    const Patch& patch = sheet.stretch[t].patch;
-    return {patch.count, patch.nodes};
-}
+std::span<const int> nodes_of(const StretchElement& e) { return {e.patch.nodes.data(), std::size_t(e.patch.count)}; }
+std::span<const int> nodes_of(const HingeBend& e) { return e.nodes; }
+std::span<const int> nodes_of(const RestCurvature& e) { return e.nodes; }
 
 Eigen::SparseMatrix<double> compact_matrix(const Bending& bending) {
     std::vector<Eigen::Triplet<double>> entries;
@@ -44,9 +39,8 @@ void colour(Sheet& sheet) {
     for (int k = 0; k < clusters; ++k) {
         const auto all_nodes = [&](auto&& holds) {
             for (int t = k * cluster; t < cluster_end(sheet, k); ++t) {
-                const ElementNodes e = element_nodes(sheet, t);
-                for (int i = 0; i < e.count; ++i)
-                    if (!holds(e.node[i])) return false;
+                for (const int i : nodes_of(sheet.stretch[t]))
+                    if (!holds(i)) return false;
             }
             return true;
         };
@@ -74,12 +68,8 @@ template <class F> void for_elements(const Sheet& sheet, F&& f) {
     }
 }
 
-std::vector<int> nodes_of(const StretchElement& e) { return {e.patch.nodes.begin(), e.patch.nodes.begin() + e.patch.count}; }
-std::vector<int> nodes_of(const HingeBend& e) { return {e.nodes.begin(), e.nodes.end()}; }
-std::vector<int> nodes_of(const RestCurvature& e) { return e.nodes; }
-
 template <class Element> bool acts_on(const Element& e, const std::vector<char>& moving) {
-    const std::vector<int> nodes = nodes_of(e);
+    const std::span<const int> nodes = nodes_of(e);
     return std::any_of(nodes.begin(), nodes.end(), [&](int i) { return moving[i]; });
 }
 
@@ -198,9 +188,9 @@ void sheet_gradient(const Sheet& sheet, const Points& x, Points& gradient) {
 
 void sheet_couplings(const Sheet& sheet, std::vector<std::pair<int, int>>& pairs) {
     for (int t = 0; t < int(sheet.stretch.size()); ++t) {
-        const ElementNodes e = element_nodes(sheet, t);
-        for (int a = 0; a < e.count; ++a)
-            for (int b = 0; b < a; ++b) pairs.emplace_back(e.node[a], e.node[b]);
+        const std::span<const int> node = nodes_of(sheet.stretch[t]);
+        for (std::size_t a = 0; a < node.size(); ++a)
+            for (std::size_t b = 0; b < a; ++b) pairs.emplace_back(node[a], node[b]);
     }
     couplings(sheet.creases, pairs);
 }
@@ -209,11 +199,11 @@ void sheet_slots(Sheet& sheet, const BlockMatrix& matrix) {
     sheet.slots.resize(sheet.stretch.size());
     parallel_for(int(sheet.stretch.size()), 256, [&](int begin, int end) {
         for (int t = begin; t < end; ++t) {
-            const ElementNodes e = element_nodes(sheet, t);
-            for (int a = 0; a < e.count; ++a)
-                for (int b = 0; b < a; ++b)
+            const std::span<const int> node = nodes_of(sheet.stretch[t]);
+            for (std::size_t a = 0; a < node.size(); ++a)
+                for (std::size_t b = 0; b < a; ++b)
                     sheet.slots[t][a * Patch::max_nodes + b] =
-                        matrix.find(std::max(e.node[a], e.node[b]), std::min(e.node[a], e.node[b]));
+                        matrix.find(std::max(node[a], node[b]), std::min(node[a], node[b]));
         }
     });
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sewing/sparse_solve.h"
 
-#include <cblas.h>
+#include "sewing/blas.h"
+
 #include <cholmod.h>
 #include <omp.h>
 
@@ -16,7 +17,7 @@ namespace {
 struct Workspace {
     cholmod_common common;
     Workspace() {
-        openblas_set_num_threads(1); // the last bits of its sums depend on their number
+        settle_blas();
         omp_set_max_active_levels(0);
         cholmod_start(&common);
         common.print = 0;

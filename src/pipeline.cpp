@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "src/pipeline.h"
 
-#include "draping/algebra/cholesky.h"
 #include "geometry/parallel.h"
 #include "io/companion.h"
 #include "io/hash.h"
@@ -13,6 +12,7 @@
 #include "io/start_from.h"
 #include "io/write_file.h"
 #include "draping/hooks.h"
+#include "sewing/blas.h"
 #include "src/drape_input.h"
 #include "src/exit_code.h"
 #include "src/quantity.h"

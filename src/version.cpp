@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "src/version.h"
 
-#include "draping/algebra/cholesky.h"
+#include "sewing/blas.h"
 
 #include <CGAL/version.h>
 #include <CLI/Version.hpp>

@@ -2,8 +2,8 @@
 #include "draping/algebra/cholesky.h"
 
 #include "draping/algebra/supernodes.h"
+#include "sewing/blas.h"
 
-#include <cblas.h>
 #include <cholmod.h>
 #include <omp.h>
 
@@ -27,7 +27,7 @@ struct Cholesky::Impl {
     cholmod_dense *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
 
     Impl() {
-        openblas_set_num_threads(1);
+        settle_blas();
         omp_set_max_active_levels(0); // CHOLMOD's loops are too short for the four threads it asks for
         cholmod_start(&common);
         common.supernodal = CHOLMOD_SUPERNODAL;
@@ -152,7 +152,5 @@ bool Cholesky::factorise_preconditioner(const BlockMatrix& a) {
 }
 
 void Cholesky::precondition(const Eigen::VectorXd& b, Eigen::VectorXd& x) { impl_->single->solve(b, x); }
-
-std::string blas_name() { return std::string(openblas_get_config()) + ", core " + openblas_get_corename(); }
 
 } // namespace toile

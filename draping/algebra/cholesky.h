@@ -6,7 +6,6 @@
 #include "draping/algebra/block_matrix.h"
 
 #include <memory>
-#include <string>
 
 namespace toile {
 
@@ -42,8 +41,5 @@ private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
-
-/// The BLAS at work. It always runs one thread, since its sums depend on their number.
-std::string blas_name();
 
 } // namespace toile

@@ -2,6 +2,7 @@
 #include "io/flat_svg.h"
 
 #include "geometry/text.h"
+#include "io/markup.h"
 #include "io/write_file.h"
 #include "patterns/curve.h"
 
@@ -19,23 +20,6 @@ std::string number(double x) {
     s.erase(s.find_last_not_of('0') + 1);
     if (s.back() == '.') s.pop_back();
     return s == "-0" ? "0" : s;
-}
-
-std::string escaped(const std::string& text) {
-    std::string out;
-    for (char c : text) {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += static_cast<unsigned char>(c) < 0x20 ? '?' : c;
-    }
-    return out;
 }
 
 /// Hues that stay apart however many there are.

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/chart/chart.h"
+
+#include "draping/chart/scene_rest.h"
+#include "geometry/parallel.h"
+#include "geometry/text.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <map>
+#include <stdexcept>
+
+namespace toile {
+
+namespace {
+
+constexpr double exact = 1e-10;    // residual of what a solver's error is measured from, or what rounding leaves after
+constexpr int exact_iterations = 50; // so many more iterations: with a stiff membrane 1e-6
+constexpr double exact_seconds = 120;
+
+/// s; 0: a method's own.
+std::vector<double> steps_of(Method method, int steps) {
+    if (method != Method::xpbd && method != Method::nonconforming) return {0};
+    std::vector<double> all{2e-3, 1e-3, 5e-4};
+    all.resize(std::min<std::size_t>(steps, all.size()));
+    return all;
+}
+
+double median(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
+struct Timed {
+    SceneRest rest;
+    double cpu = 0, wall = 0; // s
+};
+
+Timed timed(const SceneCloth& cloth, const SceneRestOptions& options) {
+    const std::clock_t cpu = std::clock();
+    const auto wall = std::chrono::steady_clock::now();
+    Timed t{rest_of(cloth, options)};
+    t.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
+    t.cpu = double(std::clock() - cpu) / CLOCKS_PER_SEC;
+    return t;
+}
+
+/// The number that a method which settles comes to on this mesh to the last digits.
+std::optional<double> exact_value(const Scene& scene, const SceneCloth& cloth, Method method) {
+    SceneRestOptions options{method};
+    options.max_seconds = exact_seconds;
+    const SceneRest rest = rest_of(cloth, options);
+    if (!rest.failure.empty()) return {};
+    SceneCloth near = cloth;
+    near.x = rest.x;
+    options.tolerance = exact;
+    options.max_iterations = exact_iterations;
+    return scene.measure(cloth, rest_of(near, options).x);
+}
+
+ChartScene answered(const Scene& scene, int meshes) {
+    if (scene.answer) return {scene, *scene.answer, "theory"};
+    const double edge = scene.edges[std::min<std::size_t>(meshes, scene.edges.size()) - 1];
+    const SceneCloth coarse = scene.make(edge), fine = scene.make(edge / 2);
+    const std::optional<double> a = exact_value(scene, coarse, Method::equilibrium), b = exact_value(scene, fine, Method::equilibrium);
+    if (!a || !b) throw std::runtime_error("the scene '" + scene.name + "' has no answer: equilibrium does not come to rest on it");
+    ChartScene answered{scene, *b + (*b - *a) / 3, text("equilibria at %.3g and %.3g mm", 1000 * edge, 500 * edge)};
+    answered.scene.scale = std::abs(answered.answer);
+    return answered;
+}
+
+ChartPoint point(const ChartScene& s, const SceneCloth& cloth, double edge, Method method, double step, const ChartOptions& options) {
+    ChartPoint p;
+    p.scene = s.scene.name;
+    p.method = method;
+    p.edge_length = edge;
+    p.step = step;
+    SceneRestOptions how{method, step};
+    how.max_seconds = options.max_seconds;
+    const int all = threads();
+    std::vector<double> cpu, wall;
+    for (int k = 0; k < options.repeats && p.failure.empty(); ++k) {
+        set_threads(1);
+        const Timed one = timed(cloth, how);
+        set_threads(all);
+        cpu.push_back(one.cpu);
+        p.failure = one.rest.failure;
+        p.value = s.scene.measure(cloth, one.rest.x);
+        wall.push_back(p.failure.empty() ? timed(cloth, how).wall : one.wall);
+    }
+    p.seconds_cpu = median(cpu);
+    p.seconds_wall = median(wall);
+    p.error = std::abs(p.value - s.answer) / s.scene.scale;
+    if (!std::isfinite(p.error) && p.failure.empty()) p.failure = "not finite";
+    return p;
+}
+
+void mark_front(std::vector<ChartPoint>& points, std::size_t first) {
+    for (std::size_t i = first; i < points.size(); ++i) {
+        ChartPoint& p = points[i];
+        p.front = p.failure.empty();
+        for (std::size_t j = first; j < points.size() && p.front; ++j) {
+            const ChartPoint& q = points[j];
+            p.front = !q.failure.empty() || q.error >= p.error || q.seconds_cpu >= p.seconds_cpu;
+        }
+    }
+}
+
+} // namespace
+
+Chart make_chart(const ChartOptions& options) {
+    Chart chart;
+    for (const Scene& scene : options.scenes) {
+        const std::size_t first = chart.points.size();
+        chart.scenes.push_back(answered(scene, options.meshes));
+        const ChartScene& s = chart.scenes.back();
+        const int meshes = std::min(options.meshes, int(scene.edges.size()));
+        std::vector<SceneCloth> cloths;
+        for (int m = 0; m < meshes; ++m) cloths.push_back(scene.make(scene.edges[m]));
+        std::map<Method, std::vector<std::optional<double>>> exactly; // by method that settles, per mesh
+        for (const Method method : options.methods) {
+            std::vector<std::optional<double>> best(meshes);
+            if (const std::optional<Method> twin = newton_twin(method)) {
+                std::vector<std::optional<double>>& values = exactly[*twin];
+                for (int m = int(values.size()); m < meshes; ++m) values.push_back(exact_value(scene, cloths[m], *twin));
+                best = values;
+            }
+            for (const double step : steps_of(method, options.steps))
+                for (int m = 0; m < meshes; ++m) {
+                    if (options.progress)
+                        options.progress(text("%s, %s, %.3g mm", scene.name.c_str(), to_string(method), 1e3 * scene.edges[m]));
+                    chart.points.push_back(point(s, cloths[m], scene.edges[m], method, step, options));
+                    if (best[m]) chart.points.back().error_solver = std::abs(chart.points.back().value - *best[m]) / s.scene.scale;
+                }
+        }
+        mark_front(chart.points, first);
+    }
+    return chart;
+}
+
+const ChartPoint* fastest_within(const Chart& chart, const std::string& scene, double error) {
+    const ChartPoint* best = nullptr;
+    for (const ChartPoint& p : chart.points)
+        if (p.scene == scene && p.failure.empty() && p.error <= error && (!best || p.seconds_cpu < best->seconds_cpu)) best = &p;
+    return best;
+}
+
+std::optional<double> order_of(const Chart& chart, const std::string& scene, Method method) {
+    std::vector<const ChartPoint*> found; // with the last step, coarse to fine
+    for (const ChartPoint& p : chart.points)
+        if (p.scene == scene && p.method == method) {
+            if (!found.empty() && p.edge_length > found.back()->edge_length) found.clear();
+            found.push_back(&p);
+        }
+    if (found.size() < 2) return {};
+    const ChartPoint &a = *found[found.size() - 2], &b = *found.back();
+    if (!a.failure.empty() || !b.failure.empty()) return {};
+    return std::log(a.error / b.error) / std::log(a.edge_length / b.edge_length);
+}
+
+} // namespace toile

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// Cloth whose shape at rest is known: what a method, a mesh and a step are charted by. Each scene is small, has one number as its answer,
+// and can be meshed at any edge length. docs/chart.md has the formulas.
+
+#include "draping/fabric/fabric.h"
+#include "sewing/garment.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace toile {
+
+/// A scene at one mesh size, about to be let go.
+struct SceneCloth {
+    Garment garment;
+    std::vector<Fabric> fabrics; ///< one per panel
+    Points x;                    ///< where it starts, m
+    std::vector<int> held;       ///< nodes that stay there
+    double gravity = 0;          ///< m/s2 along -y
+    double area = 0;             ///< m2
+};
+
+struct Scene {
+    std::string name;     ///< "cantilever, aligned, 1e4"
+    std::string quantity; ///< what the number is: "drop over reach of the tip"
+    /// The number that theory gives; none: what the equilibria of the two finest meshes tend to, by Richardson with order 2.
+    std::optional<double> answer;
+    double scale = 1; ///< errors are shares of this
+    std::vector<double> edges; ///< m, of the meshes to chart, each half of the one before
+    std::function<SceneCloth(double edge)> make;
+    std::function<double(const SceneCloth& cloth, const Points& x)> measure;
+};
+
+/// All of them, in the order in which they are charted:
+/// a strip clamped level at one end, weight * length^3 / stiffness = 10, on squares halved alike, halved in turn, and triangles of no direction,
+/// with a membrane of 1e4 and 1e6 times the plate's stiffness over length^2; a cloth hung by two ends as a chain; a sector of a disc sewn
+/// to a cone; a square hung by two corners.
+std::vector<Scene> chart_scenes();
+
+} // namespace toile

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/chart/scene_rest.h"
+
+#include "draping/cloth.h"
+#include "draping/solve/settle.h"
+#include "draping/solve/stepper.h"
+#include "geometry/text.h"
+
+#include <chrono>
+#include <memory>
+
+namespace toile {
+
+namespace {
+
+constexpr double damping = 10;        // 1/s, of air: falls at 1 m/s, swings die away in half a second
+constexpr double time_step = 2e-3;    // s
+constexpr double most_motion = 5e-3;  // m in a step
+constexpr double rest_speed = 1e-3;   // m/s
+constexpr int most_steps = 200000;
+constexpr int most_rounds = 20;       // of constraints that take up forces
+constexpr ContactOptions no_contact{{1, 0, 0}, {1, 0, 0}, false};
+
+class Deadline {
+public:
+    explicit Deadline(double seconds) : end_(std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds)) {}
+    bool passed() const { return std::chrono::steady_clock::now() > end_; }
+
+private:
+    std::chrono::time_point<std::chrono::steady_clock, std::chrono::duration<double>> end_;
+};
+
+SceneRest by_newton(const SceneCloth& cloth, const SceneRestOptions& options, const Deadline& deadline) {
+    ClothProblem problem(make_energy(options.method, cloth.garment, cloth.fabrics, {}), cloth.garment, cloth.fabrics, {}, no_contact);
+    problem.gravity = cloth.gravity;
+    for (const int i : cloth.held) problem.pin(i);
+    SettleOptions o;
+    o.tolerance = options.tolerance;
+    o.max_iterations = options.max_iterations;
+    o.progress = [&](int, double) { return !deadline.passed(); };
+    Cholesky factor;
+    SceneRest rest{cloth.x, 0, ""};
+    SettleResult r = settle(problem, rest.x, factor, o);
+    for (int k = 0; r.end == SettleEnd::settled && problem.take_up(rest.x); ++k) {
+        r = settle(problem, rest.x, factor, o);
+        if (k == most_rounds) r.end = SettleEnd::iterations;
+    }
+    rest.residual = r.residual;
+    switch (r.end) {
+    case SettleEnd::settled: break;
+    case SettleEnd::iterations: rest.failure = "out of iterations"; break;
+    case SettleEnd::stalled: rest.failure = "stalled"; break;
+    case SettleEnd::stopped: rest.failure = "out of time"; break;
+    }
+    return rest;
+}
+
+SceneRest by_motion(const SceneCloth& cloth, const SceneRestOptions& options, const Deadline& deadline) {
+    ResponseOptions alone;
+    alone.self = false;
+    const std::unique_ptr<Response> response = make_response(ContactResponse::impulse, contact_cloth(cloth.garment), {}, alone);
+    std::vector<char> held(cloth.x.size(), 0);
+    for (const int i : cloth.held) held[i] = 1;
+    MethodOptions how;
+    how.time_step = options.time_step;
+    const std::unique_ptr<Stepper> stepper = make_stepper(options.method, cloth.garment, cloth.fabrics, held, *response,
+                                                          {time_step, damping, most_motion}, how);
+    stepper->loads().gravity = cloth.gravity;
+    Moving moving{cloth.x};
+    RestOptions o;
+    o.tolerance = options.tolerance;
+    o.speed = rest_speed;
+    o.max_steps = most_steps;
+    o.progress = [&](int, double) { return !deadline.passed(); };
+    const RestResult r = come_to_rest(*stepper, moving, {}, o);
+    SceneRest rest{moving.x, r.residual, r.broken};
+    if (rest.failure.empty() && !r.rested) rest.failure = r.stopped ? "out of time" : "out of steps";
+    return rest;
+}
+
+} // namespace
+
+SceneRest rest_of(const SceneCloth& cloth, const SceneRestOptions& options) {
+    const Deadline deadline(options.max_seconds);
+    return settles(options.method) ? by_newton(cloth, options, deadline) : by_motion(cloth, options, deadline);
+}
+
+std::optional<Method> newton_twin(Method method) {
+    if (settles(method)) return method;
+    switch (method) {
+    case Method::springs_explicit:
+    case Method::springs_limited: return Method::springs_implicit; // no scene comes near a limit
+    case Method::xpbd: return Method::triangles;
+    default: return {};
+    }
+}
+
+} // namespace toile

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "src/chart_job.h"
+
+#include "geometry/parallel.h"
+#include "io/chart_page.h"
+#include "io/chart_svg.h"
+#include "io/write_file.h"
+#include "sewing/blas.h"
+#include "src/version.h"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+
+namespace toile {
+
+namespace {
+
+std::vector<Scene> scenes_asked(const std::vector<std::string>& names) {
+    const std::vector<Scene> all = chart_scenes();
+    if (names.empty()) return all;
+    std::vector<Scene> asked;
+    std::string known;
+    for (const Scene& s : all) {
+        known += (known.empty() ? "'" : ", '") + s.name + "'";
+        for (const std::string& name : names)
+            if (s.name.starts_with(name)) {
+                asked.push_back(s);
+                break;
+            }
+    }
+    for (const std::string& name : names) {
+        bool found = false;
+        for (const Scene& s : asked) found = found || s.name.starts_with(name);
+        if (!found) throw InputError("no scene begins with '" + name + "', the scenes are " + known);
+    }
+    return asked;
+}
+
+/// As the system calls it; "unknown" where it does not say.
+std::string processor() {
+    std::ifstream in("/proc/cpuinfo");
+    for (std::string line; std::getline(in, line);)
+        if (line.starts_with("model name")) return line.substr(std::min(line.size(), line.find(':') + 2));
+    return "an unknown processor";
+}
+
+std::string file_name(const std::string& scene) {
+    std::string name;
+    for (const char c : scene)
+        if (std::isalnum(static_cast<unsigned char>(c)))
+            name += c;
+        else if (!name.empty() && name.back() != '-')
+            name += '-';
+    return name;
+}
+
+} // namespace
+
+ChartOutcome run_chart(const ChartJob& job) {
+    const std::filesystem::path page(job.page);
+    const std::string stem = (page.parent_path() / page.stem()).string();
+    ChartOptions options;
+    options.scenes = scenes_asked(job.scenes);
+    options.methods = job.methods.empty() ? all_methods() : job.methods;
+    options.meshes = job.meshes;
+    options.steps = job.steps;
+    options.repeats = job.repeats;
+    options.max_seconds = job.max_seconds;
+    options.progress = job.progress;
+    check_writable(job.page);
+    ChartOutcome outcome;
+    outcome.chart = make_chart(options);
+    const std::string version = version_text();
+    const ChartMachine machine{processor(), threads(), version.substr(0, version.find('\n')), blas_name()};
+    const auto write = [&](const std::string& path, const std::string& bytes) {
+        write_file(path, bytes);
+        outcome.written.push_back(path);
+    };
+    write(job.page, chart_page(outcome.chart, machine));
+    write(stem + ".csv", chart_csv(outcome.chart));
+    outcome.json = chart_json(outcome.chart, machine);
+    write(stem + ".json", outcome.json);
+    for (const ChartScene& s : outcome.chart.scenes) write(stem + "-" + file_name(s.scene.name) + ".svg", chart_svg(outcome.chart, s));
+    return outcome;
+}
+
+} // namespace toile

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// Run scenes by methods and write error against time.
+
+#include "draping/chart/chart.h"
+
+#include <string>
+#include <vector>
+
+namespace toile {
+
+struct ChartJob {
+    std::vector<std::string> scenes; ///< names, or what they begin with; empty: all
+    std::vector<Method> methods;     ///< empty: all
+    int meshes = 4, steps = 3, repeats = 5; ///< as ChartOptions has them
+    double max_seconds = 20;         ///< of one run
+    std::string page;                ///< HTML file; beside it go name.csv, name.json and name-SCENE.svg
+    std::function<void(const std::string& what)> progress;
+};
+
+struct ChartOutcome {
+    Chart chart;
+    std::string json; ///< as written
+    std::vector<std::string> written;
+};
+
+/// Does the job. Throws InputError when there is no such scene or a target cannot be written, before anything is run.
+ChartOutcome run_chart(const ChartJob& job);
+
+} // namespace toile

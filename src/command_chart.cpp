@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "src/command_line.h"
+
+#include "geometry/parallel.h"
+#include "geometry/text.h"
+#include "src/chart_job.h"
+#include "src/options.h"
+#include "src/quantity.h"
+
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <memory>
+#include <ostream>
+
+namespace toile {
+namespace {
+
+constexpr int quick_meshes = 3;
+constexpr double quick_seconds = 0.5;
+
+struct ChartArguments {
+    ChartJob job;
+    std::vector<std::string> methods;
+    double max_seconds = 0; ///< 0: by default
+    int threads = 0;
+    bool quiet = false, json = false, quick = false;
+};
+
+/// The fastest at rest within an error, of every scene.
+void summarise(std::ostream& out, const ChartOutcome& outcome) {
+    for (const ChartScene& s : outcome.chart.scenes) {
+        out << s.scene.name << ":";
+        for (const double share : {0.05, 0.01}) {
+            const ChartPoint* best = fastest_within(outcome.chart, s.scene.name, share);
+            out << text(" within %g %%: ", 100 * share)
+                << (best ? text("%s, edges of %.3g mm, %.3g s", to_string(best->method), 1e3 * best->edge_length, best->seconds_cpu) : "none")
+                << (share > 0.02 ? ";" : "\n");
+        }
+    }
+    const auto failed = std::count_if(outcome.chart.points.begin(), outcome.chart.points.end(), [](const ChartPoint& p) { return !p.failure.empty(); });
+    out << outcome.chart.points.size() << " points, " << failed << " of them not at rest\n";
+    list_written(out, outcome.written);
+}
+
+int chart_command(const ChartArguments& a, const Console& console) {
+    set_threads(a.threads);
+    ChartJob job = a.job;
+    for (const std::string& name : a.methods) {
+        const Method method = method_called(name);
+        if (std::find(job.methods.begin(), job.methods.end(), method) == job.methods.end()) job.methods.push_back(method);
+    }
+    if (a.quick) {
+        job.meshes = quick_meshes;
+        job.steps = job.repeats = 1;
+        job.max_seconds = quick_seconds;
+    }
+    if (a.max_seconds > 0) job.max_seconds = a.max_seconds;
+    if (console.terminal && !a.quiet)
+        job.progress = [&console](const std::string& what) { console.err << "\r\033[K" << what << std::flush; };
+    const ChartOutcome outcome = run_chart(job);
+    if (job.progress) console.err << "\r\033[K" << std::flush;
+    if (a.json)
+        console.out << outcome.json << std::flush;
+    else if (!a.quiet)
+        summarise(console.out, outcome);
+    console.out << std::flush;
+    return exit_made;
+}
+
+} // namespace
+
+void add_chart(CLI::App& app, Command& chosen) {
+    CLI::App& command = *app.add_subcommand("chart", "Chart error against time, by scenes with known answers, methods and mesh sizes");
+    const auto a = std::make_shared<ChartArguments>();
+    command.add_option("-o,--output", a->job.page, "Page to write, .html; its data and pictures go beside it as .csv, .json and .svg")
+        ->type_name("FILE")
+        ->required()
+        ->check([](const std::string& path) { return path.ends_with(".html") ? std::string() : path + " does not end in .html"; });
+    command.add_option("--scene", a->job.scenes, "Scene, or what the names of several begin with; may be repeated (default: all)")->type_name("NAME");
+    std::vector<std::string> names;
+    for (const Method m : all_methods()) names.push_back(to_string(m));
+    command.add_option("--method", a->methods, "Method; may be repeated (default: all)")
+        ->check(CLI::IsMember(names).description(""))
+        ->type_name("NAME");
+    command.add_flag("--quick", a->quick, "Three meshes instead of four, one step size instead of three, one run of each instead of five, given up after 0.5 s");
+    add_duration(command, "max-seconds", a->max_seconds, 0.001, 1e6, "Time after which a run has failed (default 20 s; with --quick 0.5 s)");
+    add_run_options(command, a->threads, a->quiet, a->json);
+    command.callback([a, &chosen] { chosen = [a](const Console& console) { return chart_command(*a, console); }; });
+}
+
+} // namespace toile

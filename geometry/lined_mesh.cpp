@@ -14,6 +14,7 @@ namespace {
 // Shares of an edge, or weights in a triangle.
 constexpr double at_corner = 0.25; // nearer to a corner that may move, a line takes it along
 constexpr double at_held = 0.02;   // nearer to one that may not, it goes through that
+constexpr double sliver = 0.02;    // height of a triangle over its longest edge below which that edge is turned
 constexpr double opposite = 0.5;   // sum of two normals that are about 150 degrees apart
 
 bool has(const Triangle& t, int point) { return t[0] == point || t[1] == point || t[2] == point; }
@@ -152,6 +153,33 @@ Vec3 LinedMesh::normal_at(int point) const {
     return sum.normalized();
 }
 
+/// Corners moved onto a line may come to lie on one straight line: the longest edge, where it is no line, becomes the other diagonal.
+void LinedMesh::turn_slivers() {
+    const auto height = [&](int a, int b, int c) { // over the longest edge
+        const Vec3 &p = mesh_.points[a], &q = mesh_.points[b], &r = mesh_.points[c];
+        return (q - p).cross(r - p).norm() / std::max({(q - p).squaredNorm(), (r - q).squaredNorm(), (p - r).squaredNorm()});
+    };
+    for (int t = 0; t < int(mesh_.triangles.size()); ++t) {
+        const Triangle whole = mesh_.triangles[t];
+        const auto length = [&](int k) { return (mesh_.points[whole[(k + 1) % 3]] - mesh_.points[whole[k]]).norm(); };
+        const int k = int(std::max({0, 1, 2}, [&](int i, int j) { return length(i) < length(j); }));
+        const int a = whole[k], b = whole[(k + 1) % 3], c = whole[(k + 2) % 3];
+        if (!held_[a] && !held_[b] && !held_[c]) continue;
+        if (height(a, b, c) > sliver || lines_.count(key(a, b))) continue;
+        for (const int s : ring(a)) {
+            if (s == t || !has(mesh_.triangles[s], b)) continue;
+            const Triangle& beyond = mesh_.triangles[s];
+            const int d = beyond[0] + beyond[1] + beyond[2] - a - b;
+            const std::vector<int> at_c = ring(c);
+            const bool there = std::any_of(at_c.begin(), at_c.end(), [&](int u) { return has(mesh_.triangles[u], d); });
+            if (there || !(std::min(height(a, d, c), height(d, b, c)) > height(a, b, c))) break;
+            replace(t, {a, d, c});
+            replace(s, {d, b, c});
+            break;
+        }
+    }
+}
+
 bool LinedMesh::join(int a, int b, int line) {
     const Vec3 origin = mesh_.points[a], goal = mesh_.points[b] - origin;
     const Vec3 up = normal_at(a) + normal_at(b), across = goal.cross(up);
@@ -165,6 +193,7 @@ bool LinedMesh::join(int a, int b, int line) {
         for (const int t : ring(here)) {
             if (has(mesh_.triangles[t], b)) {
                 mark(here, b, line);
+                turn_slivers();
                 return true;
             }
             const auto& corner = mesh_.triangles[t];
@@ -218,6 +247,7 @@ bool LinedMesh::cut_by_plane(const Vec3& on, const Vec3& normal, const Eigen::Al
                 mark(t[k], t[(k + 1) % 3], line);
                 any = true;
             }
+    turn_slivers();
     return any;
 }
 

@@ -35,6 +35,7 @@ private:
     int split_edge(int a, int b, double share);
     void hold(int point) { held_[point] = 1; }
     bool may_move(int point, double way) const;
+    void turn_slivers();
     int split_face(int t, const Vec3& p);
     void replace(int t, const Triangle& by);
     int add(const Triangle& t);

@@ -71,6 +71,23 @@ CutPiece take(const LinedMesh& surface, Parting& parting, int set, const std::st
     return piece;
 }
 
+void lay_flat(std::vector<CutPiece>& pieces, const FlattenOptions& options) {
+    std::vector<TriMesh> meshes;
+    std::vector<SewnEdges> sewn;
+    std::map<std::array<int, 2>, SewnEdges> open; // by an edge's points of the surface: its first side
+    for (int p = 0; p < int(pieces.size()); ++p) {
+        meshes.push_back(pieces[p].mesh);
+        const std::vector<int> border = border_loop(pieces[p].mesh);
+        for (std::size_t k = 0; k < border.size(); ++k) {
+            const std::array<int, 2> edge{border[k], border[(k + 1) % border.size()]};
+            const auto [at, fresh] = open.try_emplace(key(pieces[p].source[edge[0]], pieces[p].source[edge[1]]), SewnEdges{{p, p}, {edge, edge}});
+            if (!fresh) sewn.push_back({{at->second.piece[0], p}, {at->second.points[0], edge}});
+        }
+    }
+    const std::vector<Flattened> flat = flatten(meshes, sewn, options);
+    for (std::size_t p = 0; p < pieces.size(); ++p) pieces[p].flat = flat[p];
+}
+
 /// A stretch of a piece's border between places where lines meet or end.
 struct Chain {
     int panel = 0;
@@ -263,14 +280,15 @@ std::vector<CutPiece> cut_out(const LinedMesh& surface, const std::vector<Wanted
         if (!fresh)
             throw std::invalid_argument("panels \"" + other->second + "\" and \"" + w.name +
                                         "\" lie in one piece: the lines do not part them");
-        CutPiece& piece = pieces.emplace_back(take(surface, parting, set, w.name));
+        pieces.push_back(take(surface, parting, set, w.name));
         try {
-            piece.flat = flatten(piece.mesh, options);
+            expect_disc(pieces.back().mesh);
         } catch (const std::invalid_argument& error) {
             throw std::invalid_argument("panel \"" + w.name + "\" cannot be flattened: " + error.what() +
                                         "; a piece with one border was expected, which a further line can make of it");
         }
     }
+    lay_flat(pieces, options);
     return pieces;
 }
 

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-// A curved piece laid into the plane with as little strain as may be.
+// Curved pieces laid into the plane with as little strain as may be, so that what is sewn together is of one length.
 
 #include "geometry/tri_mesh.h"
 
 namespace toile {
 
+/// Edges of two pieces, or of one, that are sewn to each other.
+struct SewnEdges {
+    std::array<int, 2> piece;
+    std::array<std::array<int, 2>, 2> points; ///< of each
+};
+
 struct FlattenOptions {
-    double border_weight = 100;  ///< of a border edge's length over its triangle's strain: sides of a seam keep their lengths
-    double tolerance = 1e-9;   ///< change of a place in one round, as a share of the piece's size, at which it is flat
-    int max_rounds = 10000;
+    double seam_weight = 1000; ///< of squared differences of sewn edges' lengths over the triangles' strains
+    double tolerance = 1e-8;   ///< move of a point in one round, as a share of the pieces' size, at which they are flat
+    int max_rounds = 1000;
 };
 
 struct Flattened {
@@ -19,11 +25,13 @@ struct Flattened {
     bool settled = false;     ///< whether the tolerance was reached
 };
 
-/// `piece` is a disc. Least sum of area |J - R|^2, J the map of a triangle from space and R the rotation nearest to it, by
-/// turns in places and rotations (Liu and others: A Local/Global Approach to Mesh Parameterization, 2008), from the least
-/// squares conformal map (Levy and others, 2002); alike in all directions. Border edges pull to their lengths besides.
-/// Throws std::invalid_argument when the piece has no border of one loop.
-Flattened flatten(const TriMesh& piece, const FlattenOptions& options = {});
+/// Least sum of area times flat_energy (flat_energy.h) of the maps of triangles from space, and of `seam_weight` times sewn_energy, by Newton's
+/// method with the positive part of each Hessian, from a map onto a disc (Tutte: How to Draw a Graph, 1963; Floater: Mean Value Coordinates, 2003): no triangle is ever turned
+/// over. Alike in all directions. Every piece stands up to expect_disc.
+std::vector<Flattened> flatten(const std::vector<TriMesh>& pieces, const std::vector<SewnEdges>& sewn, const FlattenOptions& options = {});
+
+/// Throws std::invalid_argument, which says what is wrong, for a piece that has not one border or has a handle, or a triangle without area.
+void expect_disc(const TriMesh& piece);
 
 /// The border of a piece, from its lowest point on as the triangles there run. Throws std::invalid_argument when it is not one loop.
 std::vector<int> border_loop(const TriMesh& piece);

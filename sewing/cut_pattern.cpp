@@ -4,6 +4,7 @@
 #include "geometry/disjoint_sets.h"
 #include "geometry/distance.h"
 #include "geometry/edges.h"
+#include "patterns/curve.h"
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
@@ -140,7 +141,7 @@ public:
 private:
     struct Fit {
         Edge edge;
-        double off = 0; ///< m, farthest point of the border from its place on the curve
+        double off = 0; ///< m, farthest point of the border from its place on the curve, or what their lengths differ by
     };
 
     const Vec2& flat(const Chain& c, int k) const { return pieces_[c.panel].flat.points[c.points[k]]; }
@@ -219,6 +220,7 @@ private:
             const double t = at[k - from] / at.back();
             fit.off = std::max(fit.off, (outer(t) + control.transpose() * weights(t) - flat(c, k)).norm());
         }
+        fit.off = std::max(fit.off, std::abs(length(fit.edge) - at.back())); // between few points a cubic may wind
         return fit;
     }
 

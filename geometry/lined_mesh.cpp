@@ -113,14 +113,6 @@ int LinedMesh::split_face(int t, const Vec3& p) {
 }
 
 int LinedMesh::point_near(const Vec3& p, double reach) {
-    double nearest = reach * reach;
-    std::array<int, 2> edge{-1, -1};
-    for (const auto& [ends, line] : lines_) {
-        const Vec3 &a = mesh_.points[ends[0]], &b = mesh_.points[ends[1]];
-        const double s = nearest_on_segment(p, a, b), squared = ((1 - s) * a + s * b - p).squaredNorm();
-        if (squared < nearest) nearest = squared, edge = ends;
-    }
-    if (edge[0] >= 0) return cross_edge(edge[0], edge[1], nearest_on_segment(p, mesh_.points[edge[0]], mesh_.points[edge[1]]));
     int at = -1;
     Nearest best;
     best.squared = std::numeric_limits<double>::infinity();
@@ -133,6 +125,14 @@ int LinedMesh::point_near(const Vec3& p, double reach) {
     const auto weight = [&](int k) { return best.weight[k % 3 + 1]; };
     Vec3 on = Vec3::Zero();
     for (int k = 0; k < 3; ++k) on += weight(k) * mesh_.points[t[k]];
+    double nearest = reach * reach;
+    std::array<int, 2> edge{-1, -1};
+    for (const auto& [ends, line] : lines_) {
+        const Vec3 &a = mesh_.points[ends[0]], &b = mesh_.points[ends[1]];
+        const double s = nearest_on_segment(on, a, b), squared = ((1 - s) * a + s * b - on).squaredNorm();
+        if (squared < nearest) nearest = squared, edge = ends;
+    }
+    if (edge[0] >= 0) return cross_edge(edge[0], edge[1], nearest_on_segment(on, mesh_.points[edge[0]], mesh_.points[edge[1]]));
     int point = -1;
     for (int k = 0; k < 3 && point < 0; ++k)
         if (weight(k) > 1 - at_held || may_move(t[k], (on - mesh_.points[t[k]]).norm())) point = t[k];

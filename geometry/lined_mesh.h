@@ -20,7 +20,7 @@ public:
     /// The line that an edge belongs to, the smaller point first; that of an edge of two lines is the first drawn.
     const std::map<std::array<int, 2>, int>& lines() const { return lines_; }
 
-    /// The point of the surface nearest to p, made a corner of its triangles; on a line where one is within `reach` metres.
+    /// The point of the surface nearest to p, made a corner of its triangles; on a line where one is within `reach` metres of it.
     int point_near(const Vec3& p, double reach = 0);
 
     /// Draws a line from point a to b: the section by the plane that holds both and the mean of the normals there. False

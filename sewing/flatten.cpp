@@ -229,7 +229,12 @@ std::vector<int> border_loop(const TriMesh& piece) {
     const int first = int(std::find_if(next.begin(), next.end(), [](int n) { return n >= 0; }) - next.begin());
     std::vector<int> loop{first};
     while (next[loop.back()] != first && loop.size() <= count) loop.push_back(next[loop.back()]);
-    if (loop.size() != count) throw std::invalid_argument("it has a hole, or borders that touch");
+    if (loop.size() != count) {
+        for (const int p : loop) next[p] = -1;
+        const auto other = std::find_if(next.begin(), next.end(), [](int n) { return n >= 0; });
+        const Vec3& at = piece.points[other == next.end() ? loop.back() : int(other - next.begin())];
+        throw std::invalid_argument("it has a hole, or borders that touch" + text(", at (%.3f, %.3f, %.3f)", at.x(), at.y(), at.z()));
+    }
     return loop;
 }
 

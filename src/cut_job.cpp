@@ -10,6 +10,7 @@
 #include "io/write_file.h"
 #include "io/write_pattern.h"
 #include "patterns/check.h"
+#include "sewing/check_cut.h"
 #include "src/pipeline.h"
 
 #include <nlohmann/json.hpp>
@@ -169,10 +170,11 @@ CutOutcome run_cut(const CutJob& job) {
     CutOutcome outcome;
     try {
         outcome.pieces = cut_out(surface, lines.panels);
+        outcome.pattern = pattern_of(surface, outcome.pieces, names);
+        expect_sound(outcome.pattern);
     } catch (const std::invalid_argument& error) {
         throw InputError(job.lines + ": " + error.what());
     }
-    outcome.pattern = pattern_of(surface, outcome.pieces, names);
     outcome.written = targets(job);
 
     Json report{{"toile", TOILE_VERSION}, {"offset", job.offset}, {"panels", Json::array()}};

@@ -27,10 +27,12 @@ void summarise(std::ostream& out, const CutOutcome& outcome) {
     for (const auto& p : r["panels"]) {
         out << text("panel %s: strained by %.2f %% on the mean, at most %.2f %%", p["name"].get<std::string>().c_str(),
                     100 * p["strain_mean"].get<double>(), 100 * p["strain_max"].get<double>());
-        if (const auto& d = p["would_take"]; !d.is_null())
-            out << text("; a %s of %.1f degrees to (%.3f, %.3f, %.3f) would take it away", d["kind"].get<std::string>().c_str(),
-                        std::abs(d["degrees"].get<double>()), d["point"][0].get<double>(), d["point"][1].get<double>(),
-                        d["point"][2].get<double>());
+        const char* before = "; curvature that would be taken away by";
+        for (const auto& d : p["would_take"]) {
+            out << before << text(" a %s of %.1f degrees to (%.3f, %.3f, %.3f)", d["kind"].get<std::string>().c_str(), std::abs(d["degrees"].get<double>()),
+                                  d["point"][0].get<double>(), d["point"][1].get<double>(), d["point"][2].get<double>());
+            before = ",";
+        }
         out << '\n';
     }
     double off = 0;

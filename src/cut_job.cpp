@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "src/cut_job.h"
 
+#include "geometry/disjoint_sets.h"
+#include "geometry/edges.h"
 #include "geometry/offset_surface.h"
 #include "geometry/text.h"
 #include "io/preview.h"
@@ -26,6 +28,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr double degree = EIGEN_PI / 180;
 constexpr double dart_worth = 5 * degree; // below it, cloth takes up what a dart would
+constexpr double smoothing = 0.05; // width of the bell by which curvature is smoothed, as a share of the root of the panel's area
 
 TriMesh surface_of(const CutJob& job) {
     if (job.offset > 0) return offset_surface(read_avatar(job.body).body, job.offset, job.edge);
@@ -59,28 +62,62 @@ std::vector<double> angle_defects(const TriMesh& mesh) {
     return defects;
 }
 
-/// All curvature of the inside, what a dart of that angle with its point in the middle of it would take away, from the nearest
-/// place of the border; negative curvature asks for a gusset instead.
-Json dart_json(const CutPiece& piece) {
-    const std::vector<double> defects = angle_defects(piece.mesh);
-    const double all = std::accumulate(defects.begin(), defects.end(), 0.0);
+/// By point, the number of its patch: points joined by edges where curvature, smoothed, has one sign.
+std::vector<int> patches_of(const TriMesh& mesh, const std::vector<double>& defects) {
+    double area = 0;
+    for (int t = 0; t < int(mesh.triangles.size()); ++t) area += area_of(mesh, t);
+    const double width = smoothing * std::sqrt(area);
+    std::vector<char> domed(mesh.points.size());
+    for (std::size_t i = 0; i < domed.size(); ++i) {
+        double sum = 0;
+        for (std::size_t k = 0; k < domed.size(); ++k)
+            sum += defects[k] * std::exp(-0.5 * (mesh.points[k] - mesh.points[i]).squaredNorm() / (width * width));
+        domed[i] = sum > 0;
+    }
+    DisjointSets patches(int(mesh.points.size()));
+    for (const auto& [a, b] : make_edges(mesh.triangles, int(mesh.points.size())).ends)
+        if (domed[a] == domed[b]) patches.join(a, b);
+    std::vector<int> all;
+    for (int i = 0; i < int(mesh.points.size()); ++i) all.push_back(patches.find(i));
+    return all;
+}
+
+/// What would take away the curvature of a patch: a dart of that angle with its point in the middle of it, from the nearest place of the
+/// border; where it is negative, a gusset.
+Json dart_json(const CutPiece& piece, const std::vector<double>& defects, const std::vector<int>& patch, int number, double all) {
     double weight = 0;
     Vec3 middle = Vec3::Zero();
-    for (std::size_t i = 0; i < defects.size(); ++i)
+    std::vector<int> own;
+    for (std::size_t i = 0; i < defects.size(); ++i) {
+        if (patch[i] != number) continue;
+        own.push_back(int(i));
         if (defects[i] * all > 0) weight += std::abs(defects[i]), middle += std::abs(defects[i]) * piece.mesh.points[i];
-    if (!(std::abs(all) > dart_worth)) return {};
+    }
     middle /= weight;
     const auto nearest = [&](const std::vector<int>& points) {
         return piece.mesh.points[*std::min_element(points.begin(), points.end(), [&](int a, int b) {
             return (piece.mesh.points[a] - middle).norm() < (piece.mesh.points[b] - middle).norm();
         })];
     };
-    std::vector<int> every(piece.mesh.points.size());
-    std::iota(every.begin(), every.end(), 0);
     return {{"kind", all > 0 ? "dart" : "gusset"},
             {"degrees", all / degree},
-            {"point", place_json(nearest(every))},
+            {"point", place_json(nearest(own))},
             {"from", place_json(nearest(border_loop(piece.mesh)))}};
+}
+
+/// Of every patch whose curvature is worth a dart, the most first.
+Json darts_json(const CutPiece& piece) {
+    const std::vector<double> defects = angle_defects(piece.mesh);
+    const std::vector<int> patch = patches_of(piece.mesh, defects);
+    std::vector<double> sum(defects.size(), 0);
+    for (std::size_t i = 0; i < defects.size(); ++i) sum[patch[i]] += defects[i];
+    std::vector<int> order(sum.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return std::abs(sum[a]) > std::abs(sum[b]); });
+    Json all = Json::array();
+    for (const int p : order)
+        if (std::abs(sum[p]) > dart_worth) all.push_back(dart_json(piece, defects, patch, p, sum[p]));
+    return all;
 }
 
 Json panel_json(const CutPiece& piece) {
@@ -93,7 +130,7 @@ Json panel_json(const CutPiece& piece) {
     return {{"name", piece.name},           {"area", area},
             {"strain_max", strains[worst]}, {"at", place_json(at)},
             {"strain_mean", mean / area},   {"settled", piece.flat.settled},
-            {"would_take", dart_json(piece)}};
+            {"would_take", darts_json(piece)}};
 }
 
 Json seams_json(const Pattern& pattern) {

@@ -188,3 +188,16 @@ TEST_CASE("ends of lines meet a line near their place on the surface and none of
         }
     }
 }
+
+TEST_CASE("triangles that a line drawn along them would leave without area are turned") {
+    for (const int k : {27, 86, 99}) { // of many lines these did so
+        LinedMesh surface(ellipsoid(Vec3(1, 0.7, 1), 16, 11));
+        const double a = 0.37 * k, b = a + 1.1 + 0.3 * std::sin(k * 0.77);
+        const int from = surface.point_near(Vec3(std::cos(a), 0.4 * std::sin(1.3 * k), std::sin(a)));
+        REQUIRE(surface.join(from, surface.point_near(Vec3(std::cos(b), 0.5 * std::cos(2.1 * k), std::sin(b))), 0));
+        for (const auto& [p, q, r] : surface.mesh().triangles) {
+            const Vec3 u = surface.mesh().points[q] - surface.mesh().points[p], v = surface.mesh().points[r] - surface.mesh().points[p];
+            CHECK(u.cross(v).norm() > 1e-3 * std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()}));
+        }
+    }
+}

@@ -52,16 +52,50 @@ SceneCloth sheet(const SheetMesh& mesh, const Fabric& fabric) {
     return cloth;
 }
 
-// The heavy elastica phi'' = -Gamma (1 - s) cos phi, clamped level: integrated to 1e-8.
-constexpr double cantilever_gamma = 10, cantilever_slope = 1.06680232;
+constexpr double cantilever_gamma = 10;
 constexpr double arm = 0.1; // m
+
+/// Drop over reach of the tip of a heavy elastica of unit length and stiffness, clamped level, of weight gamma and the given membrane stiffness:
+/// with w = gamma (1 - s) below, e = w sin(phi) / membrane, phi'' = -(1 + e) w cos(phi), phi(0) = phi'(1) = 0, phi downward. Runge-Kutta
+/// of fourth order from the tip, whose angle is found by bisection. 1.06680232 where nothing stretches.
+double elastica_slope(double gamma, double membrane) {
+    constexpr int steps = 2000;
+    constexpr double h = 1.0 / steps;
+    struct State {
+        double phi, turn, reach, drop;
+    };
+    const auto rate = [&](double t, const State& a) { // t = 1 - s
+        const double weight = gamma * t, stretched = 1 + weight * std::sin(a.phi) / membrane;
+        return State{a.turn, -stretched * weight * std::cos(a.phi), stretched * std::cos(a.phi), stretched * std::sin(a.phi)};
+    };
+    const auto ahead = [](const State& a, double by, const State& r) {
+        return State{a.phi + by * r.phi, a.turn + by * r.turn, a.reach + by * r.reach, a.drop + by * r.drop};
+    };
+    const auto at_root = [&](double tip) {
+        State a{tip, 0, 0, 0};
+        for (int i = 0; i < steps; ++i) {
+            const double t = i * h;
+            const State k1 = rate(t, a), k2 = rate(t + h / 2, ahead(a, h / 2, k1)), k3 = rate(t + h / 2, ahead(a, h / 2, k2)),
+                        k4 = rate(t + h, ahead(a, h, k3));
+            a = ahead(ahead(ahead(ahead(a, h / 6, k1), h / 3, k2), h / 3, k3), h / 6, k4);
+        }
+        return a;
+    };
+    double low = 0, high = pi / 2; // the root's angle grows with the tip's
+    for (int i = 0; i < 60; ++i) {
+        const double middle = (low + high) / 2;
+        (at_root(middle).phi < 0 ? low : high) = middle;
+    }
+    const State root = at_root(high);
+    return root.drop / root.reach;
+}
 
 Scene cantilever(MeshKind kind, const char* mesh_name, double membrane) {
     Scene s;
     s.name = text("cantilever, %s, %.0e", mesh_name, membrane);
     s.name.erase(std::remove(s.name.begin(), s.name.end(), '+'), s.name.end());
     s.quantity = "drop over reach of the tip";
-    s.answer = s.scale = cantilever_slope;
+    s.answer = s.scale = elastica_slope(cantilever_gamma, membrane);
     s.edges = halved(arm / 7, 4);
     s.make = [kind, membrane](double edge) {
         const double bend = density * g * arm * arm * arm / cantilever_gamma;
@@ -86,6 +120,7 @@ Scene cantilever(MeshKind kind, const char* mesh_name, double membrane) {
 
 // A chain of length L between supports d apart, L / d = 1.5: sinh(u) / u = L / d, sag = d (cosh(u) - 1) / 2 u.
 constexpr double catenary_sag = 0.5026333, supports = 0.2; // of d; m
+constexpr double arc_angle = 1.4957824; // rad, half of an arc as long for its chord: sin a = 2/3 a
 
 Scene catenary() {
     Scene s;
@@ -97,11 +132,10 @@ Scene catenary() {
         const double length = 1.5 * supports;
         const SheetMesh mesh = sheet_mesh(MeshKind::alternating, length, 0.06, edge);
         SceneCloth cloth = sheet(mesh, plain(1e4, 1e-7)); // stretched by 5e-5, and too limp to tell from a chain
-        const double half = length / 2, drop = std::sqrt(half * half - supports * supports / 4); // a taut V
-        for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-            const double along = mesh.points[i].x() / half; // 0 .. 2
-            cloth.x.push_back({(along - 1) * supports / 2, -drop * (1 - std::abs(along - 1)), -mesh.points[i].y()});
-            if (along < 1e-9 || along > 2 - 1e-9) cloth.held.push_back(int(i));
+        for (std::size_t i = 0; i < mesh.points.size(); ++i) { // an arc of a circle: from a taut V some meshes keep its fold as a dimple
+            const double along = mesh.points[i].x() / length, angle = arc_angle * (2 * along - 1), radius = length / (2 * arc_angle);
+            cloth.x.push_back({radius * std::sin(angle), radius * (std::cos(arc_angle) - std::cos(angle)), -mesh.points[i].y()});
+            if (along < 1e-9 || along > 1 - 1e-9) cloth.held.push_back(int(i));
         }
         return cloth;
     };

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sewing/blas.h"
 
-#include <catch2/catch_test_macros.hpp>
-#include <catch2/matchers/catch_matchers_string.hpp>
+#include <catch2/catch.hpp>
 
 #include <cblas.h>
 
@@ -11,11 +10,20 @@
 
 using namespace toile;
 
+namespace {
+
+const bool kernels_named = std::getenv("OPENBLAS_CORETYPE"); // before any test
+
+} // namespace
+
 TEST_CASE("BLAS has the same kernels on every processor that can run them") {
 #ifdef __x86_64__
-    if (std::getenv("OPENBLAS_CORETYPE")) SKIP("OPENBLAS_CORETYPE names other kernels");
-    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) SKIP("the processor has no AVX2");
-    CHECK_THAT(blas_name(), Catch::Matchers::EndsWith("core Haswell"));
+    if (kernels_named)
+        WARN("skipped: OPENBLAS_CORETYPE names other kernels");
+    else if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
+        WARN("skipped: the processor has no AVX2");
+    else
+        CHECK_THAT(blas_name(), Catch::Matchers::EndsWith("core Haswell"));
 #endif
     settle_blas();
     constexpr int n = 100;

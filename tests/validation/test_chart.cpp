@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The chart of docs/chart.md in its quick form: its answers, and how fast each method comes nearer to them with the mesh.
+
+#include "draping/chart/chart.h"
+#include "draping/chart/scene_rest.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+using namespace toile;
+
+namespace {
+
+Scene scene(const std::string& name) {
+    for (const Scene& s : chart_scenes())
+        if (s.name == name) return s;
+    throw std::runtime_error("no scene " + name);
+}
+
+ChartOptions quick(const std::vector<std::string>& scenes, const std::vector<Method>& methods) {
+    ChartOptions o;
+    for (const std::string& name : scenes) o.scenes.push_back(scene(name));
+    o.methods = methods;
+    o.meshes = 3;
+    o.steps = o.repeats = 1;
+    return o;
+}
+
+} // namespace
+
+TEST_CASE("chart: a heavy strip that hardly stretches has the slope of the elastica") {
+    CHECK(*scene("cantilever, aligned, 1e06").answer == Approx(1.06680232).epsilon(1e-5));
+    CHECK(*scene("cantilever, aligned, 1e04").answer > *scene("cantilever, aligned, 1e06").answer);
+}
+
+TEST_CASE("chart: methods whose bending is right are of second order on squares") {
+    const std::vector<Method> methods{Method::equilibrium, Method::projective, Method::inextensible};
+    const std::vector<std::string> scenes{"cantilever, aligned, 1e04", "cantilever, alternating, 1e04"};
+    const Chart chart = make_chart(quick(scenes, methods));
+    for (const std::string& name : scenes)
+        for (const Method method : methods) {
+            INFO(name << ", " << to_string(method));
+            const std::optional<double> order = order_of(chart, name, method);
+            REQUIRE(order);
+            if (method != Method::inextensible) CHECK(*order == Approx(2).margin(0.3)); // which does not stretch as the answer does
+        }
+}
+
+TEST_CASE("chart: hinges on squares stay off however fine they are") {
+    const Chart chart = make_chart(quick({"cantilever, aligned, 1e04"}, {Method::triangles, Method::springs_implicit}));
+    for (const ChartPoint& p : chart.points) {
+        INFO(to_string(p.method) << ", " << p.edge_length);
+        CHECK(p.failure == "");
+        CHECK(p.error > 0.1);
+        CHECK(p.error < 0.2);
+    }
+}
+
+TEST_CASE("chart: a chain of springs is of second order and its motion ends at the rest of its energy") {
+    const Chart chart = make_chart(quick({"catenary"}, {Method::springs_implicit, Method::springs_biphasic}));
+    for (const Method method : {Method::springs_implicit, Method::springs_biphasic}) {
+        const std::optional<double> order = order_of(chart, "catenary", method);
+        REQUIRE(order);
+        CHECK(*order == Approx(2).margin(0.3));
+    }
+    const Scene s = scene("cantilever, aligned, 1e04");
+    const SceneCloth cloth = s.make(s.edges[0]);
+    const auto value = [&](Method method) {
+        SceneRestOptions o{method};
+        const SceneRest rest = rest_of(cloth, o);
+        CHECK(rest.failure == "");
+        return s.measure(cloth, rest.x);
+    };
+    CHECK(value(Method::springs_explicit) == Approx(value(Method::springs_implicit)).epsilon(2e-3));
+    CHECK(value(Method::xpbd) == Approx(value(Method::triangles)).epsilon(2e-3));
+}
+
+TEST_CASE("chart: sewn sectors of discs are cones to second order") {
+    const Chart chart = make_chart(quick({"cone"}, {Method::projective, Method::triangles}));
+    for (const Method method : {Method::projective, Method::triangles}) {
+        const std::optional<double> order = order_of(chart, "cone", method);
+        REQUIRE(order);
+        CHECK(*order == Approx(2).margin(0.3));
+    }
+}
+
+TEST_CASE("chart: a solver is asked how far it is from the end") {
+    const Chart chart = make_chart(quick({"catenary"}, {Method::triangles}));
+    for (const ChartPoint& p : chart.points) {
+        REQUIRE(p.error_solver);
+        CHECK(*p.error_solver < 1e-4 * std::max(p.error, 1e-2));
+    }
+}
+
+TEST_CASE("chart: what takes too long has failed and is on no front") {
+    ChartOptions o = quick({"cantilever, aligned, 1e04"}, {Method::springs_explicit, Method::projective});
+    o.max_seconds = 0.05;
+    const Chart chart = make_chart(o);
+    const ChartPoint* best = fastest_within(chart, o.scenes[0].name, 1);
+    REQUIRE(best);
+    CHECK(best->method == Method::projective);
+    bool failed = false;
+    for (const ChartPoint& p : chart.points) {
+        CHECK(!(p.front && !p.failure.empty()));
+        failed = failed || p.failure == "out of time";
+        for (const ChartPoint& q : chart.points)
+            if (p.front && q.failure.empty()) CHECK(!(q.error < p.error && q.seconds_cpu < p.seconds_cpu));
+    }
+    CHECK(failed);
+}

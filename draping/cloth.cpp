@@ -61,7 +61,11 @@ ClothProblem::ClothProblem(const Garment& garment, const PanelFabrics& fabrics, 
 
 ClothProblem::ClothProblem(std::unique_ptr<Energy> model, const Garment& garment, const PanelFabrics& fabrics,
                            const TriMesh& body, const ContactOptions& contact)
-    : FreeCloth(std::move(model), node_masses(garment, fabrics)), RestingContact(contact_cloth(garment), body, contact) {
+    : ClothProblem(std::move(model), model->masses(node_masses(garment, fabrics)), garment, fabrics, body, contact) {}
+
+ClothProblem::ClothProblem(std::unique_ptr<Energy>&& model, std::vector<double> masses, const Garment& garment,
+                           const PanelFabrics& fabrics, const TriMesh& body, const ContactOptions& contact)
+    : FreeCloth(std::move(model), std::move(masses)), RestingContact(contact_cloth(garment), body, contact) {
     if (auto* own = dynamic_cast<SheetEnergy*>(energy_.get())) {
         sheet_ = &own->sheet;
         limits_.swap(sheet_->limits);
@@ -99,11 +103,23 @@ void ClothProblem::limit_strain(double turn, double tighter) {
     }
 }
 
+Points ClothProblem::all_points(const Points& nodes) const {
+    Points x = state_;
+    energy_->carry(x, nodes);
+    return x;
+}
+
+Points ClothProblem::keep(Points x) {
+    state_ = std::move(x);
+    return {state_.begin(), state_.begin() + nodes()};
+}
+
 void ClothProblem::arrive(const Points& x) {
-    if (!renew_contact(x, node_mass_)) return;
+    const Points of_nodes(x.begin(), x.begin() + nodes()); // contact knows no other points
+    if (!renew_contact(of_nodes, node_mass_)) return;
     Eigen::VectorXd g;
     gradient(x, g);
-    take_up_forces(x, pinned_, g);
+    take_up_forces(of_nodes, pinned_, g);
 }
 
 double ClothProblem::value(const Points& x) { return with_contact_value(FreeCloth::value(x), contact().active(x), x); }
@@ -130,11 +146,13 @@ void ClothProblem::curvature_along(const Points& x, const Eigen::VectorXd& g, co
 }
 
 double ClothProblem::feasible_step(const Points& x, const Eigen::VectorXd& dx, std::vector<double>* shares) {
-    return longest_contact_step(x, dx, shares);
+    const double t = longest_contact_step(x, dx, shares);
+    if (shares) shares->resize(x.size(), 1.0); // nothing is in the way of a model's own points
+    return t;
 }
 
 double ClothProblem::residual(const Points& x, const Eigen::VectorXd& g) {
-    excess_ = friction_excess(x);
+    excess_ = friction_excess({x.begin(), x.begin() + nodes()});
     const double r = NodeProblem::residual(x, g);
     note_residual(r);
     return r;

@@ -44,6 +44,13 @@ public:
     /// weigh its barrier.
     void rest_on(const Garment& garment, const PanelFabrics& fabrics);
 
+    /// All points of the model (see Energy) for these nodes: its own are where the last state had them, moved along with the nodes.
+    Points all_points(const Points& nodes) const;
+    /// Keeps the state x, of all points, for the next all_points(); returns its nodes.
+    Points keep(Points x);
+    std::optional<double> kept_strain() const { return state_.empty() ? std::nullopt : energy_->kept_strain(state_); }
+    int worst_node() const { return energy_->node_near(NodeProblem::worst_node()); }
+
     /// Turns the strain limits of a sheet on, as hard as `turn` says (see StrainLimit), and `tighter` by that share than
     /// the fabric's.
     void limit_strain(double turn, double tighter = 0);
@@ -60,7 +67,10 @@ public:
     double residual(const Points& x, const Eigen::VectorXd& g) override;
 
 private:
-    double unanswered(const Points&, int i) const override { return excess_[i]; }
+    ClothProblem(std::unique_ptr<Energy>&& model, std::vector<double> masses, const Garment& garment, const PanelFabrics& fabrics,
+                 const TriMesh& body, const ContactOptions& contact);
+    int nodes() const { return contact().node_count(); }
+    double unanswered(const Points&, int i) const override { return i < nodes() ? excess_[i] : 0; }
     void more_couplings(std::vector<std::pair<int, int>>& pairs) const override { contact_couplings(pairs); }
     bool add_more_hessian(const Points& x, bool exact, BlockMatrix& h) const override { return add_pair_hessian(x, exact, h); }
 
@@ -69,6 +79,7 @@ private:
     Sheet* sheet_ = nullptr;
     std::vector<StrainLimit> limits_; ///< as the fabrics have them
     double turn_ = 0, tighter_ = 0;   ///< as the sheet has them; turn 0: it has none
+    Points state_;                    ///< of all points, the last that was kept
     std::vector<double> excess_;      ///< of friction, in the last residual()
 };
 

@@ -93,7 +93,9 @@ SettleResult DrapeRun::settle_some(ClothProblem& problem, Points& at, Cholesky& 
             result.levels.back().part_iterations += iterations;
             return iterations > 0;
         };
-    const SettleResult r = settle(problem, at, factor, o);
+    Points all = problem.all_points(at);
+    const SettleResult r = settle(problem, all, factor, o);
+    at = problem.keep(std::move(all));
     result.residual = r.residual;
     iterations_left -= r.iterations;
     result.levels.back().iterations += r.iterations;

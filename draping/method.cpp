@@ -5,6 +5,7 @@
 #include "draping/energy/spring_mesh.h"
 #include "draping/energy/triangles.h"
 #include "draping/energy/yarns.h"
+#include "draping/nonconforming/midpoint_cloth.h"
 #include "draping/solve/free_cloth.h"
 #include "draping/solve/implicit.h"
 #include "draping/solve/inextensible.h"
@@ -123,11 +124,11 @@ bool settles(Method m) {
     case Method::springs_biphasic:
     case Method::triangles:
     case Method::projective:
-    case Method::inextensible: return true;
+    case Method::inextensible:
+    case Method::nonconforming: return true;
     case Method::springs_explicit:
     case Method::springs_limited:
-    case Method::xpbd:
-    case Method::nonconforming: break;
+    case Method::xpbd: break;
     }
     return false;
 }
@@ -154,10 +155,10 @@ std::unique_ptr<Energy> make_energy(Method method, const Garment& garment, const
         yarns->tension.stiffness.assign(yarns->tension.lines().size(), line_stiffness);
         return yarns;
     }
+    case Method::nonconforming: return std::make_unique<MidpointCloth>(garment, fabrics);
     case Method::springs_explicit:
     case Method::springs_limited:
-    case Method::xpbd:
-    case Method::nonconforming: break;
+    case Method::xpbd: break;
     }
     throw std::invalid_argument(std::string("the method ") + to_string(method) + " finds no rest by its energy");
 }

@@ -238,7 +238,7 @@ void settle_level(DrapeRun& run) {
         if (last_pass && run.last_level()) o.progress = [&tight](int i, double) { return !tight.gives_up(i); };
         r = run.settle_some(problem, run.x, factor, o);
         if (last_pass && run.last_level())
-            for (int k = 0; r.end == SettleEnd::settled && problem.take_up(run.x); ++k) {
+            for (int k = 0; r.end == SettleEnd::settled && problem.take_up(problem.all_points(run.x)); ++k) {
                 r = run.settle_some(problem, run.x, factor, o);
                 if (k == most_rounds) r.end = SettleEnd::iterations;
             }
@@ -250,7 +250,7 @@ void settle_level(DrapeRun& run) {
         report.guarantee = motion ? motion->response->guarantee() : Guarantee::no_crossing;
     if (tangled || !run.grown || report.unresolved > 0) report.guarantee = Guarantee::none;
     run.result.barrier = {contact.body.distance, contact.body.stiffness, contact.cloth.stiffness};
-    if (motion) run.facts.kept_strain = motion->stepper->kept_strain();
+    run.facts.kept_strain = motion ? motion->stepper->kept_strain() : problem.kept_strain();
     if (run.last_level()) {
         const int beyond = int(problem.beyond_limits(run.x).size());
         if (motion) problem.touch(run.x);

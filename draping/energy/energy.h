@@ -6,6 +6,8 @@
 
 #include "draping/algebra/block_matrix.h"
 
+#include <optional>
+
 namespace toile {
 
 enum class HessianKind { exact, projected };
@@ -13,6 +15,15 @@ enum class HessianKind { exact, projected };
 class Energy {
 public:
     virtual ~Energy() = default;
+
+    /// A model may have points of its own, numbered after the nodes of the garment. Masses of all, kg, by those of the nodes.
+    virtual std::vector<double> masses(std::vector<double> of_nodes) const { return of_nodes; }
+    /// Moves the nodes of `x` to `nodes` and the model's own points along with them; when x is empty they are put there anew.
+    virtual void carry(Points& x, const Points& nodes) const { x = nodes; }
+    /// A node beside a point of the model's own, or the node itself.
+    virtual int node_near(int point) const { return point; }
+    /// Largest strain of triangles that a model has in the place of those between nodes.
+    virtual std::optional<double> kept_strain(const Points& x) const { return (void)x, std::nullopt; }
 
     virtual double value(const Points& x) const = 0; ///< J
     virtual void add_gradient(const Points& x, Eigen::VectorXd& g) const = 0;

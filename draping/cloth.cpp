@@ -153,7 +153,8 @@ double ClothProblem::feasible_step(const Points& x, const Eigen::VectorXd& dx, s
 
 double ClothProblem::residual(const Points& x, const Eigen::VectorXd& g) {
     excess_ = friction_excess({x.begin(), x.begin() + nodes()});
-    const double r = NodeProblem::residual(x, g);
+    // A model's own points are lighter and more than its nodes: a force counts by the mean weight of nodes alike.
+    const double r = NodeProblem::residual(x, g) * nodes() / points();
     note_residual(r);
     return r;
 }

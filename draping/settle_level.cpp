@@ -3,6 +3,7 @@
 
 #include "draping/hooks.h"
 #include "draping/respond.h"
+#include "draping/solve/take_up.h"
 #include "draping/take_apart.h"
 #include "draping/untangle_garment.h"
 #include "draping/where.h"
@@ -26,7 +27,9 @@ constexpr double coarse_residual = 10;         // to which levels that are not t
 constexpr int untangle_every = 20;             // iterations after which cloth that did not come apart is tried again,
 constexpr int most_untangles = 5;              // in each pass
 constexpr int most_iterations = 3000;          // of the last pass of a level
-constexpr int most_rounds = 20;               // of constraints that take up forces
+constexpr int most_slides = 8;                 // rounds of constraints that take up forces in a pass without friction,
+constexpr int most_sliding = 80;               // with so many iterations each
+constexpr double first_taken_up = 5;           // residual from which constraints of cloth with points of its own take up forces
 constexpr int tight_every = 100;               // iterations after which cloth is looked at that may be too small
 constexpr double too_tight = 0.01;             // m, missing round the garment, of which
 constexpr double tight_gain = 0.1;             // this share has to have gone since, for it to go on
@@ -191,14 +194,22 @@ void settle_level(DrapeRun& run) {
         double softness;
         int iterations;
         bool hooked;
+        bool slides = false; ///< without friction
     };
     // A carrying edge finds the height at which it fits before friction may hold it, since a tight band on a
     // slight cone is held by friction at any height.
+    const bool own_points = problem.all_points(run.x).size() > run.x.size();
     std::vector<Pass> passes{{1.0 / 4, 8, false}, {1, most_iterations, false}};
     if (first)
         passes = {{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, run.last_level() ? most_iterations : 150, false}};
     if (!sheet) passes.erase(passes.begin(), passes.end() - (first ? 2 : 1)); // nothing to soften
     if (run.facts.restarted) passes = {{1, most_iterations, false}};
+    // Cloth that keeps its lengths finds the place where it fits before friction may hold it: a band on a slight cone would
+    // be held at any height, by ever larger tensions.
+    if (own_points && !run.facts.restarted) {
+        passes.insert(passes.end() - 1, {1, most_sliding, first, true});
+        problem.friction.coefficient = problem.cloth_friction.coefficient = 0;
+    }
     if (acting.hooks.size() > kept.size()) {
         passes.insert(passes.end() - 1, {1, 100, true});
         problem.friction.coefficient = problem.cloth_friction.coefficient = 0;
@@ -213,6 +224,8 @@ void settle_level(DrapeRun& run) {
         if (!pass.hooked && acting.hooks.size() > kept.size()) {
             note_release(run);
             acting.hooks = kept;
+            problem.rest_here(run.x, run.result.friction);
+        } else if (own_points && last_pass && passes.size() > 1) {
             problem.rest_here(run.x, run.result.friction);
         }
         SettleOptions o;
@@ -236,12 +249,19 @@ void settle_level(DrapeRun& run) {
         }
         if (tangled && last_pass && !run.stopped && untangle_as_mesh(run)) untangle();
         if (last_pass && run.last_level()) o.progress = [&tight](int i, double) { return !tight.gives_up(i); };
-        r = run.settle_some(problem, run.x, factor, o);
-        if (last_pass && run.last_level())
-            for (int k = 0; r.end == SettleEnd::settled && problem.take_up(problem.all_points(run.x)); ++k) {
-                r = run.settle_some(problem, run.x, factor, o);
-                if (k == most_rounds) r.end = SettleEnd::iterations;
+        const auto some = [&](const SettleOptions& how) { return run.settle_some(problem, run.x, factor, how); };
+        const auto take_up = [&] { return problem.take_up(problem.all_points(run.x)); };
+        TakeUpOptions how;
+        how.first = own_points ? first_taken_up : 0;
+        if (pass.slides) {
+            for (int k = 0; k < most_slides && !run.stopped; ++k) {
+                some(o);
+                if (!take_up()) break;
+                o.time_step = how.time_step;
             }
+        } else {
+            r = last_pass && run.last_level() ? settle_and_take_up(some, take_up, o, how) : some(o);
+        }
         if (sheet && last_pass && run.last_level()) r = settle_within_limits(run, problem, factor, o, r);
     }
     if (!motion) run.result.residual = r.residual;

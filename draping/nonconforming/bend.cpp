@@ -243,6 +243,31 @@ struct Assembly {
     }
 };
 
+/// See MidpointBending::compact.
+Eigen::SparseMatrix<double> jumps_alone(const Assembly& all) {
+    const Garment& garment = all.garment;
+    std::vector<Eigen::Triplet<double>> entries;
+    int rows = 0;
+    for (int t = 0; t < all.triangles(); ++t)
+        for (int k = 0; k < 3; ++k) {
+            Laid other;
+            if (!all.across(t, k, other) || other.triangle < t) continue;
+            const Laid own = own_plane(garment, t);
+            const double length = (own.corner[(k + 1) % 3] - own.corner[(k + 2) % 3]).norm();
+            const double d = 0.5 * (all.stiffness(t) + all.stiffness(other.triangle));
+            const double factor = length * std::sqrt(3 * d / (all.area(t) + all.area(other.triangle)));
+            Gradient jump;
+            jump.add<2>(factor * Mat2::Identity(), gradient_of(garment, own));
+            jump.add<2>(-factor * Mat2::Identity(), gradient_of(garment, other));
+            for (const auto& [midpoint, weight] : jump.of)
+                for (int r = 0; r < 2; ++r) entries.emplace_back(rows + r, midpoint, weight[r]);
+            rows += 2;
+        }
+    Eigen::SparseMatrix<double> jumps(rows, garment.edges.size());
+    jumps.setFromTriplets(entries.begin(), entries.end());
+    return jumps.transpose() * jumps;
+}
+
 } // namespace
 
 MidpointBending make_midpoint_bending(const Garment& garment, const std::vector<Fabric>& fabrics,
@@ -274,6 +299,7 @@ MidpointBending make_midpoint_bending(const Garment& garment, const std::vector<
     for (int i = 0; i < rows; ++i)
         bending.offset.row(i) = assembly.offsets[i];
     bending.stiffness = bending.rows.transpose() * bending.rows;
+    bending.compact = jumps_alone(assembly);
     return bending;
 }
 

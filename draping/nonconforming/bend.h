@@ -37,6 +37,8 @@ struct MidpointBending {
     Eigen::SparseMatrix<double> rows;                ///< scaled by the roots of areas and moduli
     Eigen::Matrix<double, Eigen::Dynamic, 3> offset; ///< what clamps contribute
     Eigen::SparseMatrix<double> stiffness;           ///< rows^T rows: midpoints x midpoints, both halves, N/m
+    /// Jumps of gradients alone, 3 D |e|^2 / (A1 + A2): of the same order, with a tenth of the entries. Meant for what is factored.
+    Eigen::SparseMatrix<double> compact;
 };
 
 /// `fabrics` has one entry per panel. Throws std::invalid_argument for a fabric whose bending is not positive

@@ -18,7 +18,7 @@ double env(const char* name, double d) { const char* s = std::getenv(name); retu
 
 MidpointCloth::MidpointCloth(const Garment& garment, const std::vector<Fabric>& fabrics)
     : garment_(garment), nodes_(garment.node_count), ends_(garment.edges.ends), cloth_(make_nonconforming_cloth(garment, fabrics)),
-      bar_stiffness_(env("BAR", 2e3)), tie_stiffness_(env("TIE", 2e3)) {
+      bar_stiffness_(env("BAR", 300)), tie_stiffness_(env("TIE", 2e3)) {
     tension_.setZero(Eigen::Index(cloth_.bars.size()));
     held_.assign(nodes_, Vec3::Zero());
     for (const Mat2& e : garment.rest.edges) {
@@ -41,7 +41,9 @@ MidpointCloth::MidpointCloth(const Garment& garment, const std::vector<Fabric>& 
                 add(nodes_ + int(a.col()), nodes_ + int(b.col()), tie_stiffness_ * a.value() * b.value());
         }
     }
-    const auto& bend = cloth_.bending.stiffness;
+    const bool full = env("FULL", 0);
+    const auto& bend = full ? cloth_.bending.stiffness : cloth_.bending.compact;
+    if (!full) beyond_compact_ = cloth_.bending.stiffness - cloth_.bending.compact;
     for (int j = 0; j < bend.outerSize(); ++j)
         for (Eigen::SparseMatrix<double>::InnerIterator e(bend, j); e; ++e) add(nodes_ + int(e.row()), nodes_ + j, e.value());
     const int n = nodes_ + cloth_.midpoints.count();
@@ -158,12 +160,32 @@ void MidpointCloth::add_hessian(const Points& x, HessianKind kind, BlockMatrix& 
     }
 }
 
+void MidpointCloth::add_left_out(const Points&, const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
+    if (beyond_compact_.rows() == 0) return;
+    const Eigen::Index m = beyond_compact_.rows();
+    const Coordinates beyond = beyond_compact_ * Eigen::Map<const Coordinates>(v.data() + 3 * nodes_, m, 3);
+    Eigen::Map<Coordinates>(product.data() + 3 * nodes_, m, 3) += beyond;
+}
+
 bool MidpointCloth::take_up(const Points& x) {
     const double strain = *kept_strain(x), gap = largest_gap(x);
     if (std::getenv("TOLD")) std::fprintf(stderr, "  take up: strain %.2e gap %.2e\n", strain, gap);
+    if (std::getenv("TOLD")) {
+        const Points m = midpoints(x);
+        const Eigen::VectorXd c = misfit(cloth_.bars, m);
+        std::vector<std::pair<double,int>> s;
+        for (Eigen::Index b = 0; b < c.size(); ++b) s.emplace_back(-std::abs(c[b]) / cloth_.bars[b].length, int(b));
+        std::sort(s.begin(), s.end());
+        std::fprintf(stderr, "  percentiles of strain: 50%% %.1e 90%% %.1e 99%% %.1e\n", -s[s.size()/2].first, -s[s.size()/10].first, -s[s.size()/100].first);
+        for (int i = 0; i < 8; ++i) {
+            const int b = s[i].second; const Vec3 p = m[cloth_.bars[b].a];
+            std::fprintf(stderr, "   bar %d strain %.3e tension %.3f at %.3f %.3f %.3f panel %s\n", b, c[b] / cloth_.bars[b].length, tension_[b], p.x(), p.y(), p.z(), garment_.panel_names[garment_.panel_of_triangle[b / 3]].c_str());
+        }
+    }
     tension_ += bar_stiffness_ * misfit(cloth_.bars, midpoints(x));
     const Points gap_now = gaps(x);
     for (int i = 0; i < nodes_; ++i) held_[i] += tie_stiffness_ * gap_now[i];
+    if (strain > kept) bar_stiffness_ = std::min(env("GROW", 2) * bar_stiffness_, env("MOST", 2400));
     return std::max(strain, gap) > kept;
 }
 

@@ -36,6 +36,7 @@ public:
     /// Projected: of the stress of every triangle, what pushes is left out of what turns it.
     void add_hessian(const Points& x, HessianKind kind, BlockMatrix& h) const override;
     void find_blocks(const BlockMatrix& h) override;
+    void add_left_out(const Points& x, const Eigen::VectorXd& v, Eigen::VectorXd& product) const override;
     bool take_up(const Points& x) override;
 
     static constexpr double kept = 1e-6; ///< strain of triangles
@@ -57,7 +58,8 @@ private:
     Eigen::VectorXd tension_;            ///< N per bar
     Points held_;                        ///< N per node
     double bar_stiffness_, tie_stiffness_; ///< N/m
-    std::vector<Constant> constant_;     ///< lower triangle of bending and ties
+    Eigen::SparseMatrix<double, Eigen::RowMajor> beyond_compact_;
+    std::vector<Constant> constant_;     ///< lower triangle of compact bending and ties
     std::vector<int> bar_slot_;
 };
 

@@ -69,6 +69,8 @@ std::string method_sentence(const DrapeFacts& f, const Garment& g) {
         limits = text("triangles keep their shape on the midpoints of their edges, where the largest strain at the end is %.2g %%; "
                       "strains elsewhere in this report are of the mesh through the means of their corners",
                       100 * *f.kept_strain);
+    if (f.kept_strain && !f.motion && f.contact.response == ContactResponse::barrier)
+        limits += "; every level slid to where it fits its lengths before friction held it";
     return text("the %s by the method \"%s\" instead of equilibrium, which sewed and placed the cloth; %s",
                 f.motion ? "cloth moved" : "levels were brought to rest", to_string(f.method), limits.c_str());
 }

@@ -27,8 +27,9 @@ constexpr double coarse_residual = 10;         // to which levels that are not t
 constexpr int untangle_every = 20;             // iterations after which cloth that did not come apart is tried again,
 constexpr int most_untangles = 5;              // in each pass
 constexpr int most_iterations = 3000;          // of the last pass of a level
-constexpr int most_slides = 8;                 // rounds of constraints that take up forces in a pass without friction,
-constexpr int most_sliding = 80;               // with so many iterations each
+constexpr int most_slides = 10;                // rounds of constraints that take up forces in a pass without friction,
+constexpr int most_sliding = 40;               // with so many iterations each,
+constexpr double sliding_residual = 30;        // or to this residual
 constexpr double first_taken_up = 5;           // residual from which constraints of cloth with points of its own take up forces
 constexpr int tight_every = 100;               // iterations after which cloth is looked at that may be too small
 constexpr double too_tight = 0.01;             // m, missing round the garment, of which
@@ -254,6 +255,7 @@ void settle_level(DrapeRun& run) {
         TakeUpOptions how;
         how.first = own_points ? first_taken_up : 0;
         if (pass.slides) {
+            o.tolerance = sliding_residual;
             for (int k = 0; k < most_slides && !run.stopped; ++k) {
                 some(o);
                 if (!take_up()) break;

@@ -4,7 +4,7 @@
 #include <Eigen/Dense>
 
 #include <algorithm>
-#include <cstdlib>
+#include <limits>
 
 namespace toile {
 
@@ -12,14 +12,18 @@ namespace {
 
 using Coordinates = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-double env(const char* name, double d) { const char* s = std::getenv(name); return s ? std::atof(s) : d; }
+constexpr double softest = 300;       // N/m, of bars to begin with: a softer membrane lets Newton's steps be longer
+constexpr double stiffest = 1e6;      // and where they push against what is stiff, as the body's barrier is,
+constexpr double stiffer = 3;         // times what it was where a round has left more than
+constexpr double fallen = 0.3;        // this share of what was wrong
+constexpr double tie_stiffness = 2e3; // N/m
 
 } // namespace
 
 MidpointCloth::MidpointCloth(const Garment& garment, const std::vector<Fabric>& fabrics)
     : garment_(garment), nodes_(garment.node_count), ends_(garment.edges.ends), cloth_(make_nonconforming_cloth(garment, fabrics)),
-      bar_stiffness_(env("BAR", 300)), tie_stiffness_(env("TIE", 2e3)) {
-    tension_.setZero(Eigen::Index(cloth_.bars.size()));
+      tension_(Eigen::VectorXd::Zero(cloth_.bars.size())), stiffness_(Eigen::VectorXd::Constant(cloth_.bars.size(), softest)),
+      last_misfit_(Eigen::VectorXd::Constant(cloth_.bars.size(), std::numeric_limits<double>::infinity())) {
     held_.assign(nodes_, Vec3::Zero());
     for (const Mat2& e : garment.rest.edges) {
         const Vec2 d[3] = {rest_edge(e, 0) / 2, rest_edge(e, 1) / 2, rest_edge(e, 2) / 2};
@@ -34,16 +38,15 @@ MidpointCloth::MidpointCloth(const Garment& garment, const std::vector<Fabric>& 
     };
     for (int i = 0; i < nodes_; ++i) {
         if (ghost.outerIndexPtr()[i] == ghost.outerIndexPtr()[i + 1]) continue;
-        add(i, i, tie_stiffness_);
+        add(i, i, tie_stiffness);
         for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator a(ghost, i); a; ++a) {
-            add(nodes_ + int(a.col()), i, -tie_stiffness_ * a.value());
+            add(nodes_ + int(a.col()), i, -tie_stiffness * a.value());
             for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator b(ghost, i); b; ++b)
-                add(nodes_ + int(a.col()), nodes_ + int(b.col()), tie_stiffness_ * a.value() * b.value());
+                add(nodes_ + int(a.col()), nodes_ + int(b.col()), tie_stiffness * a.value() * b.value());
         }
     }
-    const bool full = env("FULL", 0);
-    const auto& bend = full ? cloth_.bending.stiffness : cloth_.bending.compact;
-    if (!full) beyond_compact_ = cloth_.bending.stiffness - cloth_.bending.compact;
+    const auto& bend = cloth_.bending.compact;
+    beyond_compact_ = cloth_.bending.stiffness - cloth_.bending.compact;
     for (int j = 0; j < bend.outerSize(); ++j)
         for (Eigen::SparseMatrix<double>::InnerIterator e(bend, j); e; ++e) add(nodes_ + int(e.row()), nodes_ + j, e.value());
     const int n = nodes_ + cloth_.midpoints.count();
@@ -79,7 +82,7 @@ Points MidpointCloth::gaps(const Points& x) const {
 double MidpointCloth::pull(int b, const Points& x) const {
     const Bar& bar = cloth_.bars[b];
     const double now = (x[nodes_ + bar.a] - x[nodes_ + bar.b]).norm();
-    return tension_[b] + bar_stiffness_ * (now - bar.length) * (now + bar.length) / (2 * bar.length);
+    return tension_[b] + stiffness_[b] * (now - bar.length) * (now + bar.length) / (2 * bar.length);
 }
 
 double MidpointCloth::largest_gap(const Points& x) const {
@@ -95,8 +98,8 @@ double MidpointCloth::value(const Points& x) const {
     const Points m = midpoints(x), gap = gaps(x);
     double sum = bend_value(cloth_.bending, m);
     const Eigen::VectorXd c = misfit(cloth_.bars, m);
-    for (Eigen::Index b = 0; b < c.size(); ++b) sum += (tension_[b] + 0.5 * bar_stiffness_ * c[b]) * c[b];
-    for (int i = 0; i < nodes_; ++i) sum += held_[i].dot(gap[i]) + 0.5 * tie_stiffness_ * gap[i].squaredNorm();
+    for (Eigen::Index b = 0; b < c.size(); ++b) sum += (tension_[b] + 0.5 * stiffness_[b] * c[b]) * c[b];
+    for (int i = 0; i < nodes_; ++i) sum += held_[i].dot(gap[i]) + 0.5 * tie_stiffness * gap[i].squaredNorm();
     return sum;
 }
 
@@ -104,11 +107,11 @@ void MidpointCloth::add_gradient(const Points& x, Eigen::VectorXd& g) const {
     const Points m = midpoints(x);
     Points tie = gaps(x);
     for (int i = 0; i < nodes_; ++i) {
-        tie[i] = held_[i] + tie_stiffness_ * tie[i];
+        tie[i] = held_[i] + tie_stiffness * tie[i];
         g.segment<3>(3 * i) += tie[i];
     }
     const Points bend = bend_gradient(cloth_.bending, m), back = from_ghost_nodes(cloth_.midpoints, tie);
-    Eigen::VectorXd own = tension_ + bar_stiffness_ * misfit(cloth_.bars, m);
+    const Eigen::VectorXd own = tension_ + stiffness_.cwiseProduct(misfit(cloth_.bars, m));
     Eigen::VectorXd of_midpoints = Eigen::VectorXd::Zero(3 * Eigen::Index(m.size()));
     add_tensions(cloth_.bars, m, own, of_midpoints);
     for (std::size_t e = 0; e < m.size(); ++e) of_midpoints.segment<3>(3 * e) += bend[e] - back[e];
@@ -152,7 +155,7 @@ void MidpointCloth::add_hessian(const Points& x, HessianKind kind, BlockMatrix& 
         for (int k = 0; k < 3; ++k) {
             const Bar& bar = cloth_.bars[3 * t + k];
             const Vec3 row = (x[nodes_ + bar.a] - x[nodes_ + bar.b]) / bar.length;
-            const Mat3 block = bar_stiffness_ * row * row.transpose() + weight[k] * Mat3::Identity();
+            const Mat3 block = stiffness_[3 * t + k] * row * row.transpose() + weight[k] * Mat3::Identity();
             h.add_diagonal(nodes_ + bar.a, block);
             h.add_diagonal(nodes_ + bar.b, block);
             h.add_off_diagonal(nodes_ + std::min(bar.a, bar.b), bar_slot_[3 * t + k], -block);
@@ -161,7 +164,6 @@ void MidpointCloth::add_hessian(const Points& x, HessianKind kind, BlockMatrix& 
 }
 
 void MidpointCloth::add_left_out(const Points&, const Eigen::VectorXd& v, Eigen::VectorXd& product) const {
-    if (beyond_compact_.rows() == 0) return;
     const Eigen::Index m = beyond_compact_.rows();
     const Coordinates beyond = beyond_compact_ * Eigen::Map<const Coordinates>(v.data() + 3 * nodes_, m, 3);
     Eigen::Map<Coordinates>(product.data() + 3 * nodes_, m, 3) += beyond;
@@ -169,23 +171,14 @@ void MidpointCloth::add_left_out(const Points&, const Eigen::VectorXd& v, Eigen:
 
 bool MidpointCloth::take_up(const Points& x) {
     const double strain = *kept_strain(x), gap = largest_gap(x);
-    if (std::getenv("TOLD")) std::fprintf(stderr, "  take up: strain %.2e gap %.2e\n", strain, gap);
-    if (std::getenv("TOLD")) {
-        const Points m = midpoints(x);
-        const Eigen::VectorXd c = misfit(cloth_.bars, m);
-        std::vector<std::pair<double,int>> s;
-        for (Eigen::Index b = 0; b < c.size(); ++b) s.emplace_back(-std::abs(c[b]) / cloth_.bars[b].length, int(b));
-        std::sort(s.begin(), s.end());
-        std::fprintf(stderr, "  percentiles of strain: 50%% %.1e 90%% %.1e 99%% %.1e\n", -s[s.size()/2].first, -s[s.size()/10].first, -s[s.size()/100].first);
-        for (int i = 0; i < 8; ++i) {
-            const int b = s[i].second; const Vec3 p = m[cloth_.bars[b].a];
-            std::fprintf(stderr, "   bar %d strain %.3e tension %.3f at %.3f %.3f %.3f panel %s\n", b, c[b] / cloth_.bars[b].length, tension_[b], p.x(), p.y(), p.z(), garment_.panel_names[garment_.panel_of_triangle[b / 3]].c_str());
-        }
-    }
-    tension_ += bar_stiffness_ * misfit(cloth_.bars, midpoints(x));
+    const Eigen::VectorXd c = misfit(cloth_.bars, midpoints(x));
+    tension_ += stiffness_.cwiseProduct(c);
     const Points gap_now = gaps(x);
-    for (int i = 0; i < nodes_; ++i) held_[i] += tie_stiffness_ * gap_now[i];
-    if (strain > kept) bar_stiffness_ = std::min(env("GROW", 2) * bar_stiffness_, env("MOST", 2400));
+    for (int i = 0; i < nodes_; ++i) held_[i] += tie_stiffness * gap_now[i];
+    for (Eigen::Index b = 0; b < c.size(); ++b)
+        if (std::abs(c[b]) > std::max(kept * cloth_.bars[b].length, fallen * last_misfit_[b]))
+            stiffness_[b] = std::min(stiffer * stiffness_[b], stiffest);
+    last_misfit_ = c.cwiseAbs();
     return std::max(strain, gap) > kept;
 }
 

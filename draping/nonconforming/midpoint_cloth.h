@@ -57,7 +57,8 @@ private:
     std::vector<Mat3> to_weights_;       ///< of a triangle: weights of its bars by its stress (xx, yy, 2 xy)
     Eigen::VectorXd tension_;            ///< N per bar
     Points held_;                        ///< N per node
-    double bar_stiffness_, tie_stiffness_; ///< N/m
+    Eigen::VectorXd stiffness_;          ///< N/m per bar
+    Eigen::VectorXd last_misfit_;        ///< m per bar, when forces were last taken up
     Eigen::SparseMatrix<double, Eigen::RowMajor> beyond_compact_;
     std::vector<Constant> constant_;     ///< lower triangle of compact bending and ties
     std::vector<int> bar_slot_;

@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 
 namespace toile {
 
@@ -47,7 +45,6 @@ struct Run {
     void analyse_if(bool pattern_changed, const BlockMatrix& h) {
         if (analysed && !pattern_changed) return;
         factor.analyse(h, analysed);
-        if (std::getenv("TOLD")) std::fprintf(stderr, "  analysed: %d points, work %.2e\n", h.block_rows(), factor.work());
         analysed = true;
         factored = false;
     }
@@ -202,7 +199,6 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
         result.energy = problem.value(x);
         problem.gradient(x, g);
         result.residual = problem.residual(x, g);
-        if (std::getenv("TOLD")) std::fprintf(stderr, "  %d residual %.3e energy %.8f h %.1e radius %.1e f %d cg %d\n", result.iterations, result.residual, result.energy, h, radius, result.factorisations, result.conjugate_gradients);
         if (options.progress && !options.progress(result.iterations, result.residual)) {
             result.end = SettleEnd::stopped;
             return result;

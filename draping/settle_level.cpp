@@ -29,7 +29,8 @@ constexpr int most_untangles = 5;              // in each pass
 constexpr int most_iterations = 3000;          // of the last pass of a level
 constexpr int most_slides = 10;                // rounds of constraints that take up forces in a pass without friction,
 constexpr int most_sliding = 40;               // with so many iterations each,
-constexpr double sliding_residual = 30;        // or to this residual
+constexpr double sliding_residual = 30;        // or to this residual,
+constexpr double slid_strain = 1e-3;           // until cloth fits by so much
 constexpr double first_taken_up = 5;           // residual from which constraints of cloth with points of its own take up forces
 constexpr int tight_every = 100;               // iterations after which cloth is looked at that may be too small
 constexpr double too_tight = 0.01;             // m, missing round the garment, of which
@@ -258,7 +259,8 @@ void settle_level(DrapeRun& run) {
             o.tolerance = sliding_residual;
             for (int k = 0; k < most_slides && !run.stopped; ++k) {
                 some(o);
-                if (!take_up()) break;
+                take_up();
+                if (problem.kept_strain().value_or(0) < slid_strain) break;
                 o.time_step = how.time_step;
             }
         } else {

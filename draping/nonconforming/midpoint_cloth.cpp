@@ -13,9 +13,12 @@ namespace {
 using Coordinates = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 constexpr double softest = 300;       // N/m, of bars to begin with: a softer membrane lets Newton's steps be longer
-constexpr double stiffest = 1e6;      // and where they push against what is stiff, as the body's barrier is,
-constexpr double stiffer = 3;         // times what it was where a round has left more than
-constexpr double fallen = 0.3;        // this share of what was wrong
+constexpr double stiff = 2400;        // where all of them get to, by a factor of
+constexpr double stiffer = 2;         // a round
+constexpr double nearly = 100;        // times the strain to be kept, below which what is left is no want of rest:
+constexpr double fallen = 0.3;        // a bar of which a round leaves more than this share pushes against what is stiff, as the
+constexpr double stiffest = 1e5;      // body's barrier is, and becomes stiffer by itself, up to this
+constexpr double stiffer_alone = 3;
 constexpr double tie_stiffness = 2e3; // N/m
 
 } // namespace
@@ -175,9 +178,13 @@ bool MidpointCloth::take_up(const Points& x) {
     tension_ += stiffness_.cwiseProduct(c);
     const Points gap_now = gaps(x);
     for (int i = 0; i < nodes_; ++i) held_[i] += tie_stiffness * gap_now[i];
-    for (Eigen::Index b = 0; b < c.size(); ++b)
-        if (std::abs(c[b]) > std::max(kept * cloth_.bars[b].length, fallen * last_misfit_[b]))
-            stiffness_[b] = std::min(stiffer * stiffness_[b], stiffest);
+    for (Eigen::Index b = 0; b < c.size(); ++b) {
+        const bool stays = std::abs(c[b]) > std::max(kept * cloth_.bars[b].length, fallen * last_misfit_[b]);
+        if (stiffness_[b] < stiff)
+            stiffness_[b] = std::min(stiffer * stiffness_[b], stiff);
+        else if (stays && strain < nearly * kept)
+            stiffness_[b] = std::min(stiffer_alone * stiffness_[b], stiffest);
+    }
     last_misfit_ = c.cwiseAbs();
     return std::max(strain, gap) > kept;
 }

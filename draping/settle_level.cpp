@@ -123,6 +123,7 @@ void note_where(DrapeRun& run, const ClothProblem& problem, SettleEnd end, int w
     if (end == SettleEnd::stalled && problem.blocking_pair() >= 0)
         where += "; no step is possible, " +
                  place_of_pair(run.garment, run.x, problem.contact().pair(problem.blocking_pair())) + " is in the way";
+    if (problem.kept_strain()) return; // of triangles of its own: those between nodes do not tell what is too small
     const Tightness t = find_tightness(run.garment, run.x, run.fabrics);
     if (t.triangle < 0) return;
     const std::string stretched =

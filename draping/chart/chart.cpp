@@ -22,7 +22,7 @@ constexpr double exact_seconds = 120;
 
 /// s; 0: a method's own.
 std::vector<double> steps_of(Method method, int steps) {
-    if (method != Method::xpbd && method != Method::nonconforming) return {0};
+    if (method != Method::xpbd) return {0};
     std::vector<double> all{2e-3, 1e-3, 5e-4};
     all.resize(std::min<std::size_t>(steps, all.size()));
     return all;
@@ -121,12 +121,9 @@ Chart make_chart(const ChartOptions& options) {
         for (int m = 0; m < meshes; ++m) cloths.push_back(scene.make(scene.edges[m]));
         std::map<Method, std::vector<std::optional<double>>> exactly; // by method that settles, per mesh
         for (const Method method : options.methods) {
-            std::vector<std::optional<double>> best(meshes);
-            if (const std::optional<Method> twin = newton_twin(method)) {
-                std::vector<std::optional<double>>& values = exactly[*twin];
-                for (int m = int(values.size()); m < meshes; ++m) values.push_back(exact_value(scene, cloths[m], *twin));
-                best = values;
-            }
+            const Method twin = newton_twin(method);
+            std::vector<std::optional<double>>& best = exactly[twin];
+            for (int m = int(best.size()); m < meshes; ++m) best.push_back(exact_value(scene, cloths[m], twin));
             for (const double step : steps_of(method, options.steps))
                 for (int m = 0; m < meshes; ++m) {
                     if (options.progress)

@@ -4,7 +4,7 @@
 #include "draping/cloth.h"
 #include "draping/solve/settle.h"
 #include "draping/solve/stepper.h"
-#include "geometry/text.h"
+#include "draping/solve/take_up.h"
 
 #include <chrono>
 #include <memory>
@@ -18,7 +18,7 @@ constexpr double time_step = 2e-3;    // s
 constexpr double most_motion = 5e-3;  // m in a step
 constexpr double rest_speed = 1e-3;   // m/s
 constexpr int most_steps = 200000;
-constexpr int most_rounds = 20;       // of constraints that take up forces
+constexpr double first_taken_up = 5; // residual from which constraints of cloth with points of its own take up forces
 constexpr ContactOptions no_contact{{1, 0, 0}, {1, 0, 0}, false};
 
 class Deadline {
@@ -39,12 +39,12 @@ SceneRest by_newton(const SceneCloth& cloth, const SceneRestOptions& options, co
     o.max_iterations = options.max_iterations;
     o.progress = [&](int, double) { return !deadline.passed(); };
     Cholesky factor;
-    SceneRest rest{cloth.x, 0, ""};
-    SettleResult r = settle(problem, rest.x, factor, o);
-    for (int k = 0; r.end == SettleEnd::settled && problem.take_up(rest.x); ++k) {
-        r = settle(problem, rest.x, factor, o);
-        if (k == most_rounds) r.end = SettleEnd::iterations;
-    }
+    Points x = problem.all_points(cloth.x);
+    TakeUpOptions rounds;
+    if (x.size() > cloth.x.size()) rounds.first = first_taken_up;
+    const SettleResult r = settle_and_take_up([&](const SettleOptions& some) { return settle(problem, x, factor, some); },
+                                              [&] { return problem.take_up(x); }, o, rounds);
+    SceneRest rest{problem.keep(std::move(x)), 0, ""};
     rest.residual = r.residual;
     switch (r.end) {
     case SettleEnd::settled: break;
@@ -85,13 +85,12 @@ SceneRest rest_of(const SceneCloth& cloth, const SceneRestOptions& options) {
     return settles(options.method) ? by_newton(cloth, options, deadline) : by_motion(cloth, options, deadline);
 }
 
-std::optional<Method> newton_twin(Method method) {
-    if (settles(method)) return method;
+Method newton_twin(Method method) {
     switch (method) {
     case Method::springs_explicit:
     case Method::springs_limited: return Method::springs_implicit; // no scene comes near a limit
     case Method::xpbd: return Method::triangles;
-    default: return {};
+    default: return method;
     }
 }
 

@@ -23,7 +23,7 @@ struct SceneRest {
 /// Brings a scene to rest as `toile drape` would with this method and the barrier: by Newton's steps, or by a motion that air slows.
 SceneRest rest_of(const SceneCloth& cloth, const SceneRestOptions& options);
 
-/// The method whose Newton's steps find the rest that this one's motion tends to, itself for one that settles; none: there is no such.
-std::optional<Method> newton_twin(Method method);
+/// The method whose Newton's steps find the rest that this one's motion tends to; itself for one that settles.
+Method newton_twin(Method method);
 
 } // namespace toile

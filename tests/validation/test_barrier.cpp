@@ -7,6 +7,7 @@
 #include "draping/solve/barrier_response.h"
 #include "draping/solve/settle.h"
 #include "draping/solve/stepper.h"
+#include "draping/solve/take_up.h"
 #include "tests/support/flat_mesh.h"
 #include "tests/support/particles.h"
 #include "tests/support/plain_fabric.h"
@@ -99,14 +100,20 @@ TEST_CASE("barrier: methods that settle come to rest on a ball and cross nothing
         o.tolerance = tolerance;
         o.max_iterations = 1000;
         bool crossed = false;
-        o.progress = [&](int, double) { return !(crossed = crossed || s.crossings() > 0); };
+        Points x = problem.all_points(s.x);
+        o.progress = [&](int, double) {
+            std::copy_n(x.begin(), s.x.size(), s.x.begin());
+            return !(crossed = crossed || s.crossings() > 0);
+        };
         Cholesky factor;
-        SettleResult r = settle(problem, s.x, factor, o);
-        for (int k = 0; k < 20 && r.end == SettleEnd::settled && problem.take_up(s.x); ++k)
-            r = settle(problem, s.x, factor, o);
+        TakeUpOptions rounds;
+        if (x.size() > s.x.size()) rounds.first = 5;
+        const SettleResult r = settle_and_take_up([&](const SettleOptions& some) { return settle(problem, x, factor, some); },
+                                                  [&] { return problem.take_up(x); }, o, rounds);
         CHECK(r.end == SettleEnd::settled);
         CHECK(r.residual <= tolerance);
-        CHECK_FALSE(problem.take_up(s.x));
+        CHECK_FALSE(problem.take_up(x));
+        s.x = problem.keep(x);
         CHECK_FALSE(crossed);
         CHECK(s.lies());
     }

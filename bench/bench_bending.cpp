@@ -147,7 +147,7 @@ void cantilever(const Candidate& candidate, double compression) {
             int iterations = 0, failed = 0;
             const auto start = std::chrono::steady_clock::now();
             for (int seed = 1; seed <= seeds; ++seed) {
-                const FlatMesh mesh = mirrored(jittered_rectangle(1, 0.25, 1.0 / n, 0.3, seed));
+                const FlatMesh mesh = with_mirror_image(jittered_rectangle(1, 0.25, 1.0 / n, 0.3, seed));
                 Fabric fabric = plate_fabric(k, 1);
                 fabric.compression = compression;
                 const Discretisation plate = candidate.make(garment_of(mesh), fabric);
@@ -197,7 +197,7 @@ void lateral(const Candidate& candidate) {
     for (int n : {10, 20, 40}) {
         Worst worst;
         for (int seed = 1; seed <= seeds; ++seed) {
-            const FlatMesh mesh = mirrored(jittered_rectangle(1, 0.25, 1.0 / n, 0.3, seed));
+            const FlatMesh mesh = with_mirror_image(jittered_rectangle(1, 0.25, 1.0 / n, 0.3, seed));
             const Discretisation plate = candidate.make(garment_of(mesh), plate_fabric(2e6, 1));
             VectorXd q = placed(plate, [](const Vec2& p) { return Vec3(p.x(), p.y(), 0); });
             double low = 0.4 * exact, high = 2 * exact;

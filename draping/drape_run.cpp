@@ -3,6 +3,7 @@
 
 #include "draping/cloth_part.h"
 #include "draping/hooks.h"
+#include "draping/settle_cloth.h"
 #include "geometry/text.h"
 
 #include <algorithm>
@@ -83,9 +84,7 @@ SettleResult DrapeRun::settle_some(ClothProblem& problem, Points& at, Cholesky& 
     o.max_iterations = std::min(o.max_iterations, iterations_left);
     o.max_step = std::min(o.max_step, edge_length()); // farther, and lists of what may touch grow too long
     const double from = share_begin, span = share_end - share_begin;
-    Points all = problem.all_points(at);
     o.progress = [&, base = done, goes_on = o.progress](int i, double r) {
-        std::copy_n(all.begin(), at.size(), at.begin()); // callers watch where the cloth is
         const double within = (base - from) / std::max(span, 1e-9);
         return tell(within + (1 - within) * (1 - std::exp(-i / 60.0)), r) && (!goes_on || goes_on(i, r));
     };
@@ -95,8 +94,7 @@ SettleResult DrapeRun::settle_some(ClothProblem& problem, Points& at, Cholesky& 
             result.levels.back().part_iterations += iterations;
             return iterations > 0;
         };
-    const SettleResult r = settle(problem, all, factor, o);
-    at = problem.keep(std::move(all));
+    const SettleResult r = settle_cloth(problem, at, factor, o);
     result.residual = r.residual;
     iterations_left -= r.iterations;
     result.levels.back().iterations += r.iterations;

@@ -14,10 +14,6 @@ namespace toile {
 
 namespace {
 
-double area_of(const Points& p, const Triangle& t) {
-    return 0.5 * (p[t[1]] - p[t[0]]).cross(p[t[2]] - p[t[0]]).norm();
-}
-
 // The direction in which triangle t runs along the edge from a to b: true for a first.
 bool runs_along(const Triangle& t, int a, int b) {
     for (int k = 0; k < 3; ++k)
@@ -44,7 +40,7 @@ void measure_surface(const TriMesh& mesh, Inspection& found) {
     found.crowded_edges = crowded_edges(mesh);
     found.turned_edges = turned_edges(mesh, edges);
     for (const Triangle& t : mesh.triangles) {
-        const double area = area_of(mesh.points, t);
+        const double area = triangle_area(mesh.points, t);
         found.area += area;
         found.flat_triangles += area == 0;
     }

@@ -3,7 +3,7 @@
 
 #include "draping/hooks.h"
 #include "draping/respond.h"
-#include "draping/solve/take_up.h"
+#include "draping/settle_cloth.h"
 #include "draping/take_apart.h"
 #include "draping/untangle_garment.h"
 #include "draping/where.h"
@@ -31,7 +31,6 @@ constexpr int most_slides = 10;                // rounds of constraints that tak
 constexpr int most_sliding = 40;               // with so many iterations each,
 constexpr double sliding_residual = 30;        // or to this residual,
 constexpr double slid_strain = 1e-3;           // until cloth fits by so much
-constexpr double first_taken_up = 5;           // residual from which constraints of cloth with points of its own take up forces
 constexpr int tight_every = 100;               // iterations after which cloth is looked at that may be too small
 constexpr double too_tight = 0.01;             // m, missing round the garment, of which
 constexpr double tight_gain = 0.1;             // this share has to have gone since, for it to go on
@@ -201,7 +200,7 @@ void settle_level(DrapeRun& run) {
     };
     // A carrying edge finds the height at which it fits before friction may hold it, since a tight band on a
     // slight cone is held by friction at any height.
-    const bool own_points = problem.all_points(run.x).size() > run.x.size();
+    const bool own_points = has_own_points(problem);
     std::vector<Pass> passes{{1.0 / 4, 8, false}, {1, most_iterations, false}};
     if (first)
         passes = {{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, run.last_level() ? most_iterations : 150, false}};
@@ -253,19 +252,16 @@ void settle_level(DrapeRun& run) {
         if (tangled && last_pass && !run.stopped && untangle_as_mesh(run)) untangle();
         if (last_pass && run.last_level()) o.progress = [&tight](int i, double) { return !tight.gives_up(i); };
         const auto some = [&](const SettleOptions& how) { return run.settle_some(problem, run.x, factor, how); };
-        const auto take_up = [&] { return problem.take_up(problem.all_points(run.x)); };
-        TakeUpOptions how;
-        how.first = own_points ? first_taken_up : 0;
         if (pass.slides) {
             o.tolerance = sliding_residual;
             for (int k = 0; k < most_slides && !run.stopped; ++k) {
                 some(o);
-                take_up();
+                problem.take_up(problem.all_points(run.x));
                 if (problem.kept_strain().value_or(0) < slid_strain) break;
-                o.time_step = how.time_step;
+                o.time_step = TakeUpOptions{}.time_step;
             }
         } else {
-            r = last_pass && run.last_level() ? settle_and_take_up(some, take_up, o, how) : some(o);
+            r = last_pass && run.last_level() ? settle_constrained(problem, run.x, o, some) : some(o);
         }
         if (sheet && last_pass && run.last_level()) r = settle_within_limits(run, problem, factor, o, r);
     }

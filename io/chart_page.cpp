@@ -42,10 +42,14 @@ std::string chart_page(const Chart& chart, const ChartMachine& machine) {
                        style + "</style>\n</head>\n<body>\n<h1>Error against time</h1>\n<p>" + escaped(machine.version) + " on " +
                        escaped(machine.processor) + text(", %d threads; ", machine.threads) + escaped(machine.blas) +
                        ". Times are medians: processor time on one thread, wall time on all.</p>\n";
-    page += "<table>\n<tr><th>scene</th><th>fastest within 5 %</th><th>fastest within 1 %</th></tr>\n";
-    for (const ChartScene& s : chart.scenes)
-        page += "<tr><td>" + escaped(s.scene.name) + "</td>" + fastest_cell(fastest_within(chart, s.scene.name, 0.05)) +
-                fastest_cell(fastest_within(chart, s.scene.name, 0.01)) + "</tr>\n";
+    page += "<table>\n<tr><th>scene</th>";
+    for (const double error : marked_errors) page += text("<th>fastest within %g %%</th>", 100 * error);
+    page += "</tr>\n";
+    for (const ChartScene& s : chart.scenes) {
+        page += "<tr><td>" + escaped(s.scene.name) + "</td>";
+        for (const double error : marked_errors) page += fastest_cell(fastest_within(chart, s.scene.name, error));
+        page += "</tr>\n";
+    }
     page += "</table>\n";
     for (const ChartScene& s : chart.scenes) {
         page += "<section>\n" + chart_svg(chart, s) +

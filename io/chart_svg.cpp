@@ -94,7 +94,7 @@ private:
             line(left, at, width - right, at, "stroke=\"#e4e4e4\"");
             words(left - 6, at + 4, "end", text("%g %%", std::pow(10, k + 2)));
         }
-        for (const double share : {0.05, 0.01}) {
+        for (const double share : marked_errors) {
             line(left, y(share), width - right, y(share), "stroke=\"#c03030\" stroke-dasharray=\"5 4\"");
             words(width - right - 4, y(share) - 4, "end", text("%g %%", 100 * share), "fill=\"#c03030\"");
         }

@@ -41,7 +41,7 @@ Flatter flatter(const TriMesh& piece, const Triangle& t, int first) {
 
 double area_of(const TriMesh& mesh) {
     double sum = 0;
-    for (const auto& [a, b, c] : mesh.triangles) sum += 0.5 * (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]).norm();
+    for (const Triangle& t : mesh.triangles) sum += triangle_area(mesh.points, t);
     return sum;
 }
 

@@ -6,7 +6,6 @@
 #include "io/chart_svg.h"
 #include "io/write_file.h"
 #include "sewing/blas.h"
-#include "src/version.h"
 
 #include <algorithm>
 #include <cctype>
@@ -38,7 +37,7 @@ std::vector<Scene> scenes_asked(const std::vector<std::string>& names) {
     return asked;
 }
 
-/// As the system calls it; "unknown" where it does not say.
+/// As the system calls it.
 std::string processor() {
     std::ifstream in("/proc/cpuinfo");
     for (std::string line; std::getline(in, line);)
@@ -61,19 +60,13 @@ std::string file_name(const std::string& scene) {
 ChartOutcome run_chart(const ChartJob& job) {
     const std::filesystem::path page(job.page);
     const std::string stem = (page.parent_path() / page.stem()).string();
-    ChartOptions options;
+    ChartOptions options = job.options;
     options.scenes = scenes_asked(job.scenes);
-    options.methods = job.methods.empty() ? all_methods() : job.methods;
-    options.meshes = job.meshes;
-    options.steps = job.steps;
-    options.repeats = job.repeats;
-    options.max_seconds = job.max_seconds;
-    options.progress = job.progress;
+    if (options.methods.empty()) options.methods = all_methods();
     check_writable(job.page);
     ChartOutcome outcome;
     outcome.chart = make_chart(options);
-    const std::string version = version_text();
-    const ChartMachine machine{processor(), threads(), version.substr(0, version.find('\n')), blas_name()};
+    const ChartMachine machine{processor(), threads(), "toile " TOILE_VERSION, blas_name()};
     const auto write = [&](const std::string& path, const std::string& bytes) {
         write_file(path, bytes);
         outcome.written.push_back(path);

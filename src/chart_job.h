@@ -12,11 +12,8 @@ namespace toile {
 
 struct ChartJob {
     std::vector<std::string> scenes; ///< names, or what they begin with; empty: all
-    std::vector<Method> methods;     ///< empty: all
-    int meshes = 4, steps = 3, repeats = 5; ///< as ChartOptions has them
-    double max_seconds = 20;         ///< of one run
+    ChartOptions options;            ///< but for the scenes; no methods: all
     std::string page;                ///< HTML file; beside it go name.csv, name.json and name-SCENE.svg
-    std::function<void(const std::string& what)> progress;
 };
 
 struct ChartOutcome {

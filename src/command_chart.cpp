@@ -5,6 +5,7 @@
 #include "geometry/text.h"
 #include "src/chart_job.h"
 #include "src/options.h"
+#include "src/progress.h"
 #include "src/quantity.h"
 
 #include <CLI/CLI.hpp>
@@ -31,11 +32,11 @@ struct ChartArguments {
 void summarise(std::ostream& out, const ChartOutcome& outcome) {
     for (const ChartScene& s : outcome.chart.scenes) {
         out << s.scene.name << ":";
-        for (const double share : {0.05, 0.01}) {
+        for (const double share : marked_errors) {
             const ChartPoint* best = fastest_within(outcome.chart, s.scene.name, share);
             out << text(" within %g %%: ", 100 * share)
                 << (best ? text("%s, edges of %.3g mm, %.3g s", to_string(best->method), 1e3 * best->edge_length, best->seconds_cpu) : "none")
-                << (share > 0.02 ? ";" : "\n");
+                << (share == marked_errors.back() ? "\n" : ";");
         }
     }
     const auto failed = std::count_if(outcome.chart.points.begin(), outcome.chart.points.end(), [](const ChartPoint& p) { return !p.failure.empty(); });
@@ -46,20 +47,21 @@ void summarise(std::ostream& out, const ChartOutcome& outcome) {
 int chart_command(const ChartArguments& a, const Console& console) {
     set_threads(a.threads);
     ChartJob job = a.job;
+    ChartOptions& options = job.options;
     for (const std::string& name : a.methods) {
         const Method method = method_called(name);
-        if (std::find(job.methods.begin(), job.methods.end(), method) == job.methods.end()) job.methods.push_back(method);
+        if (std::find(options.methods.begin(), options.methods.end(), method) == options.methods.end()) options.methods.push_back(method);
     }
     if (a.quick) {
-        job.meshes = quick_meshes;
-        job.steps = job.repeats = 1;
-        job.max_seconds = quick_seconds;
+        options.meshes = quick_meshes;
+        options.steps = options.repeats = 1;
+        options.max_seconds = quick_seconds;
     }
-    if (a.max_seconds > 0) job.max_seconds = a.max_seconds;
-    if (console.terminal && !a.quiet)
-        job.progress = [&console](const std::string& what) { console.err << "\r\033[K" << what << std::flush; };
+    if (a.max_seconds > 0) options.max_seconds = a.max_seconds;
+    ProgressLine line(console.err, console.terminal && !a.quiet);
+    options.progress = [&line](const std::string& what) { line.show(what); };
     const ChartOutcome outcome = run_chart(job);
-    if (job.progress) console.err << "\r\033[K" << std::flush;
+    line.clear();
     if (a.json)
         console.out << outcome.json << std::flush;
     else if (!a.quiet)

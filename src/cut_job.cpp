@@ -38,11 +38,6 @@ TriMesh surface_of(const CutJob& job) {
 
 Json place_json(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 
-double area_of(const TriMesh& mesh, int t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    return 0.5 * (mesh.points[b] - mesh.points[a]).cross(mesh.points[c] - mesh.points[a]).norm();
-}
-
 /// The larger of the two principal strains by amount, of every triangle.
 std::vector<double> strains_of(const CutPiece& piece) {
     std::vector<double> all;
@@ -65,7 +60,7 @@ std::vector<double> angle_defects(const TriMesh& mesh) {
 /// By point, the number of its patch: points joined by edges where curvature, smoothed, has one sign.
 std::vector<int> patches_of(const TriMesh& mesh, const std::vector<double>& defects) {
     double area = 0;
-    for (int t = 0; t < int(mesh.triangles.size()); ++t) area += area_of(mesh, t);
+    for (const Triangle& t : mesh.triangles) area += triangle_area(mesh.points, t);
     const double width = smoothing * std::sqrt(area);
     std::vector<char> domed(mesh.points.size());
     for (std::size_t i = 0; i < domed.size(); ++i) {
@@ -123,7 +118,11 @@ Json darts_json(const CutPiece& piece) {
 Json panel_json(const CutPiece& piece) {
     const std::vector<double> strains = strains_of(piece);
     double mean = 0, area = 0;
-    for (int t = 0; t < int(strains.size()); ++t) mean += strains[t] * area_of(piece.mesh, t), area += area_of(piece.mesh, t);
+    for (std::size_t t = 0; t < strains.size(); ++t) {
+        const double own = triangle_area(piece.mesh.points, piece.mesh.triangles[t]);
+        mean += strains[t] * own;
+        area += own;
+    }
     const int worst = int(std::max_element(strains.begin(), strains.end()) - strains.begin());
     Vec3 at = Vec3::Zero();
     for (const int p : piece.mesh.triangles[worst]) at += piece.mesh.points[p] / 3;

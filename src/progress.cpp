@@ -32,12 +32,22 @@ std::string progress_text(const DrapeProgress& p) {
     return line + time_left(p.seconds_left);
 }
 
-void ProgressLine::show(const DrapeProgress& progress) {
-    const auto now = std::chrono::steady_clock::now();
-    if (!shown_ || (dirty_ && now - last_ < std::chrono::milliseconds(100))) return;
-    err_ << "\r\033[K" << progress_text(progress) << std::flush;
+bool ProgressLine::due() const {
+    return shown_ && (!dirty_ || std::chrono::steady_clock::now() - last_ >= std::chrono::milliseconds(100));
+}
+
+void ProgressLine::write(const std::string& line) {
+    err_ << "\r\033[K" << line << std::flush;
     dirty_ = true;
-    last_ = now;
+    last_ = std::chrono::steady_clock::now();
+}
+
+void ProgressLine::show(const DrapeProgress& progress) {
+    if (due()) write(progress_text(progress));
+}
+
+void ProgressLine::show(const std::string& line) {
+    if (due()) write(line);
 }
 
 void ProgressLine::clear() {

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <iosfwd>
+#include <string>
 
 namespace toile {
 
@@ -18,9 +19,13 @@ public:
     ProgressLine& operator=(const ProgressLine&) = delete;
 
     void show(const DrapeProgress& progress);
+    void show(const std::string& line);
     void clear();
 
 private:
+    bool due() const; ///< not so soon after the last one
+    void write(const std::string& line);
+
     std::ostream& err_;
     bool shown_;
     bool dirty_ = false;

@@ -6,7 +6,12 @@
 #include "draping/chart/scene.h"
 #include "draping/method.h"
 
+#include <array>
+
 namespace toile {
+
+/// Errors that the chart has lines at, and names the fastest within.
+inline constexpr std::array marked_errors{0.05, 0.01};
 
 struct ChartOptions {
     std::vector<Scene> scenes;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/chart/scene.h"
 
-#include "draping/chart/sheet_mesh.h"
 #include "geometry/text.h"
 #include "sewing/mesh_grain.h"
+#include "sewing/sheet_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -37,17 +37,10 @@ std::vector<double> halved(double edge, int times) {
     return edges;
 }
 
-double area_of(const Garment& garment) {
-    double area = 0;
-    for (const Mat2& e : garment.rest.edges) area += rest_area(e);
-    return area;
-}
-
 SceneCloth sheet(const SheetMesh& mesh, const Fabric& fabric) {
     SceneCloth cloth;
     cloth.garment = sheet_garment(mesh);
     cloth.fabrics = {fabric};
-    cloth.area = area_of(cloth.garment);
     cloth.gravity = g;
     return cloth;
 }
@@ -189,7 +182,6 @@ Scene cone() {
         }
         cloth.garment = mesh_garment(triangles, nodes, std::move(edges));
         cloth.fabrics = {plain(2000, 1e-5)};
-        cloth.area = area_of(cloth.garment);
         return cloth;
     };
     s.measure = [](const SceneCloth& cloth, const Points& x) {

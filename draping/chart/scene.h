@@ -21,7 +21,6 @@ struct SceneCloth {
     Points x;                    ///< where it starts, m
     std::vector<int> held;       ///< nodes that stay there
     double gravity = 0;          ///< m/s2 along -y
-    double area = 0;             ///< m2
 };
 
 struct Scene {

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/chart/scene_rest.h"
 
-#include "draping/cloth.h"
-#include "draping/solve/settle.h"
+#include "draping/settle_cloth.h"
 #include "draping/solve/stepper.h"
-#include "draping/solve/take_up.h"
 
 #include <chrono>
 #include <memory>
@@ -18,7 +16,6 @@ constexpr double time_step = 2e-3;    // s
 constexpr double most_motion = 5e-3;  // m in a step
 constexpr double rest_speed = 1e-3;   // m/s
 constexpr int most_steps = 200000;
-constexpr double first_taken_up = 5; // residual from which constraints of cloth with points of its own take up forces
 constexpr ContactOptions no_contact{{1, 0, 0}, {1, 0, 0}, false};
 
 class Deadline {
@@ -39,12 +36,8 @@ SceneRest by_newton(const SceneCloth& cloth, const SceneRestOptions& options, co
     o.max_iterations = options.max_iterations;
     o.progress = [&](int, double) { return !deadline.passed(); };
     Cholesky factor;
-    Points x = problem.all_points(cloth.x);
-    TakeUpOptions rounds;
-    if (x.size() > cloth.x.size()) rounds.first = first_taken_up;
-    const SettleResult r = settle_and_take_up([&](const SettleOptions& some) { return settle(problem, x, factor, some); },
-                                              [&] { return problem.take_up(x); }, o, rounds);
-    SceneRest rest{problem.keep(std::move(x)), 0, ""};
+    SceneRest rest{cloth.x, 0, ""};
+    const SettleResult r = settle_constrained(problem, rest.x, o, [&](const SettleOptions& some) { return settle_cloth(problem, rest.x, factor, some); });
     rest.residual = r.residual;
     switch (r.end) {
     case SettleEnd::settled: break;

@@ -32,6 +32,7 @@ MidpointCloth::MidpointCloth(const Garment& garment, const std::vector<Fabric>& 
         const Vec2 d[3] = {rest_edge(e, 0) / 2, rest_edge(e, 1) / 2, rest_edge(e, 2) / 2};
         Mat3 to_stress;
         for (int k = 0; k < 3; ++k) to_stress.col(k) << d[k].x() * d[k].x(), d[k].y() * d[k].y(), d[k].x() * d[k].y();
+        to_stress_.push_back(to_stress);
         to_weights_.push_back(to_stress.inverse());
     }
     const auto& ghost = cloth_.midpoints.ghost;
@@ -147,7 +148,7 @@ void MidpointCloth::add_hessian(const Points& x, HessianKind kind, BlockMatrix& 
         Vec3 weight;
         for (int k = 0; k < 3; ++k) weight[k] = pull(3 * t + k, x) / cloth_.bars[3 * t + k].length;
         if (kind == HessianKind::projected) {
-            const Vec3 s = to_weights_[t].inverse() * weight;
+            const Vec3 s = to_stress_[t] * weight;
             Mat2 stress;
             stress << s[0], s[2], s[2], s[1];
             Eigen::SelfAdjointEigenSolver<Mat2> eigen;

@@ -54,7 +54,8 @@ private:
     int nodes_ = 0;
     std::vector<std::array<int, 2>> ends_;
     NonconformingCloth cloth_;
-    std::vector<Mat3> to_weights_;       ///< of a triangle: weights of its bars by its stress (xx, yy, 2 xy)
+    std::vector<Mat3> to_stress_;        ///< of a triangle: its stress (xx, yy, 2 xy) by the weights of its bars
+    std::vector<Mat3> to_weights_;       ///< and back
     Eigen::VectorXd tension_;            ///< N per bar
     Points held_;                        ///< N per node
     Eigen::VectorXd stiffness_;          ///< N/m per bar

@@ -19,7 +19,7 @@ struct ClampedStrip {
 /// From its half on x >= 0; `terms` says what a garment is made of.
 inline ClampedStrip clamped_strip(const FlatMesh& half, const std::function<std::vector<Term>(const Garment&)>& terms) {
     ClampedStrip s;
-    s.mesh = mirrored(half);
+    s.mesh = with_mirror_image(half);
     const Garment garment = garment_of(s.mesh);
     s.nodes = garment.node_count;
     s.terms = terms(garment);

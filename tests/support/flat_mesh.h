@@ -5,6 +5,7 @@
 
 #include "geometry/tri_mesh.h"
 #include "sewing/garment.h"
+#include "sewing/sheet_mesh.h"
 #include "tests/support/random.h"
 
 #include <algorithm>
@@ -12,10 +13,7 @@
 
 namespace toile::test {
 
-struct FlatMesh {
-    std::vector<Vec2> points;
-    std::vector<Triangle> triangles;
-};
+using FlatMesh = SheetMesh;
 
 inline double cross(const Vec2& a, const Vec2& b) {
     return a.x() * b.y() - a.y() * b.x();

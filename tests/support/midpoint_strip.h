@@ -9,29 +9,10 @@
 
 namespace toile::test {
 
-enum class MeshKind { aligned, alternating, unstructured };
-
-/// Squares with all diagonals one way, with diagonals that alternate, or Delaunay triangles of jittered
-/// points.
+/// Rectangles halved, or Delaunay triangles of jittered points.
 inline FlatMesh strip_mesh(MeshKind kind, double length, double width, int along, std::uint64_t seed = 1) {
     if (kind == MeshKind::unstructured) return jittered_rectangle(length, width, length / along, 0.3, seed);
-    const int up = std::max(1, int(std::lround(along * width / length)));
-    FlatMesh mesh;
-    for (int j = 0; j <= up; ++j)
-        for (int i = 0; i <= along; ++i)
-            mesh.points.push_back({length * i / along, width * j / up});
-    for (int j = 0; j < up; ++j)
-        for (int i = 0; i < along; ++i) {
-            const int a = j * (along + 1) + i, b = a + 1, c = b + along + 1, d = c - 1;
-            if (kind == MeshKind::alternating && (i + j) % 2 == 1) {
-                mesh.triangles.push_back({a, b, d});
-                mesh.triangles.push_back({b, c, d});
-            } else {
-                mesh.triangles.push_back({a, b, c});
-                mesh.triangles.push_back({a, c, d});
-            }
-        }
-    return mesh;
+    return halved_rectangles(kind, length, width, along, std::max(1, int(std::lround(along * width / length))));
 }
 
 /// Isotropic, nu = 0.

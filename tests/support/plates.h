@@ -12,22 +12,6 @@
 
 namespace toile::test {
 
-/// A mesh of x >= 0 together with its mirror image in x = 0: both arms of a strip clamped in its middle.
-/// Equilibrium of the two is symmetric, so that the cloth leaves the clamp exactly straight, whatever the
-/// element.
-inline FlatMesh mirrored(const FlatMesh& half) {
-    FlatMesh both = half;
-    std::vector<int> twin;
-    for (const Vec2& p : half.points) {
-        const bool on_line = p.x() < 1e-12;
-        twin.push_back(on_line ? int(twin.size()) : int(both.points.size()));
-        if (!on_line) both.points.push_back({-p.x(), p.y()});
-    }
-    for (const Triangle& t : half.triangles)
-        both.triangles.push_back({twin[t[0]], twin[t[2]], twin[t[1]]});
-    return both;
-}
-
 /// For every point of a mirrored mesh with x < 0 its twin with x > 0, itself otherwise.
 inline std::vector<int> twins(const std::vector<Vec2>& points) {
     std::map<std::array<long long, 2>, int> right;

@@ -4,10 +4,10 @@
 #include "draping/cloth.h"
 #include "draping/energy/yarns.h"
 #include "draping/method.h"
+#include "draping/settle_cloth.h"
 #include "draping/solve/barrier_response.h"
 #include "draping/solve/settle.h"
 #include "draping/solve/stepper.h"
-#include "draping/solve/take_up.h"
 #include "tests/support/flat_mesh.h"
 #include "tests/support/particles.h"
 #include "tests/support/plain_fabric.h"
@@ -100,20 +100,13 @@ TEST_CASE("barrier: methods that settle come to rest on a ball and cross nothing
         o.tolerance = tolerance;
         o.max_iterations = 1000;
         bool crossed = false;
-        Points x = problem.all_points(s.x);
-        o.progress = [&](int, double) {
-            std::copy_n(x.begin(), s.x.size(), s.x.begin());
-            return !(crossed = crossed || s.crossings() > 0);
-        };
+        o.progress = [&](int, double) { return !(crossed = crossed || s.crossings() > 0); };
         Cholesky factor;
-        TakeUpOptions rounds;
-        if (x.size() > s.x.size()) rounds.first = 5;
-        const SettleResult r = settle_and_take_up([&](const SettleOptions& some) { return settle(problem, x, factor, some); },
-                                                  [&] { return problem.take_up(x); }, o, rounds);
+        const SettleResult r =
+            settle_constrained(problem, s.x, o, [&](const SettleOptions& some) { return settle_cloth(problem, s.x, factor, some); });
         CHECK(r.end == SettleEnd::settled);
         CHECK(r.residual <= tolerance);
-        CHECK_FALSE(problem.take_up(x));
-        s.x = problem.keep(x);
+        CHECK_FALSE(problem.take_up(problem.all_points(s.x)));
         CHECK_FALSE(crossed);
         CHECK(s.lies());
     }

@@ -23,7 +23,7 @@ const std::vector<MeshKind> kinds = {MeshKind::aligned, MeshKind::alternating, M
 /// Drop over reach at gamma = 10 with a point per node and every edge of the mesh as a bar; both arms of a
 /// strip that is clamped by symmetry.
 double conforming_slope(const FlatMesh& arm) {
-    const FlatMesh mesh = mirrored(arm);
+    const FlatMesh mesh = with_mirror_image(arm);
     const Garment garment = garment_of(mesh);
     IsometricProblem problem;
     problem.stiffness = make_bending(garment, {sheet_fabric(1, 1)}).stiffness;

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Cloth on edge midpoints brought to rest by its energy, with the barrier.
 
-#include "draping/cloth.h"
 #include "draping/method.h"
 #include "draping/nonconforming/midpoint_cloth.h"
-#include "draping/solve/take_up.h"
+#include "draping/settle_cloth.h"
 #include "tests/support/flat_mesh.h"
 #include "tests/support/plain_fabric.h"
 #include "tests/support/random.h"
@@ -43,15 +42,7 @@ SettleResult brought_to_rest(ClothProblem& problem, Points& nodes) {
     Cholesky factor;
     SettleOptions o;
     o.max_iterations = 1000;
-    TakeUpOptions how;
-    how.first = 5;
-    const auto settled = [&](const SettleOptions& some) {
-        Points all = problem.all_points(nodes);
-        const SettleResult r = settle(problem, all, factor, some);
-        nodes = problem.keep(std::move(all));
-        return r;
-    };
-    return settle_and_take_up(settled, [&] { return problem.take_up(problem.all_points(nodes)); }, o, how);
+    return settle_constrained(problem, nodes, o, [&](const SettleOptions& some) { return settle_cloth(problem, nodes, factor, some); });
 }
 
 } // namespace

@@ -44,7 +44,7 @@ struct Tip {
 
 /// The tip is held sideways while the strip comes to rest on the floor, and then let go.
 Tip let_go(const Scene& scene, double friction) {
-    const FlatMesh mesh = mirrored(jittered_rectangle(length, width, length / 60, 0.25, 2));
+    const FlatMesh mesh = with_mirror_image(jittered_rectangle(length, width, length / 60, 0.25, 2));
     const Garment garment = garment_of(mesh, EIGEN_PI / 2);
     // First mode or near it, bent so that the tip is where it should be.
     const double clamp = above + (1 - scene.eps) * length, bend = 2 * std::sqrt(scene.eps);

@@ -118,7 +118,7 @@ Scene cantilever(const FlatMesh& half, double stretch) {
     const Fabric fabric = cloth(stretch, stretch / 2, 1e-3);
     const double b = 1.8751040687, ratio = (std::cosh(b) + std::cos(b)) / (std::sinh(b) + std::sin(b));
     const double w = b * b * std::sqrt(fabric.bend_weft / (fabric.density * std::pow(beam_length, 4)));
-    return scene(mirrored(half), fabric, w, [&](const Vec2& p) {
+    return scene(with_mirror_image(half), fabric, w, [&](const Vec2& p) {
         const double at = b * std::abs(p.x()) / beam_length;
         const double z = std::cosh(at) - std::cos(at) - ratio * (std::sinh(at) - std::sin(at));
         return std::pair(Vec3(p.x(), p.y(), 0), Vec3(0, 0, 1e-4 * z));

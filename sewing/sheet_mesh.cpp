@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "draping/chart/sheet_mesh.h"
+#include "sewing/sheet_mesh.h"
 
 #include "patterns/triangulate.h"
 #include "sewing/mesh_grain.h"
@@ -26,9 +26,7 @@ SheetMesh of_panel(double length, double width, double edge) {
 
 } // namespace
 
-SheetMesh sheet_mesh(MeshKind kind, double length, double width, double edge) {
-    if (kind == MeshKind::unstructured) return of_panel(length, width, edge);
-    const int along = std::max(1, int(std::lround(length / edge))), up = std::max(1, int(std::lround(width / edge)));
+SheetMesh halved_rectangles(MeshKind kind, double length, double width, int along, int up) {
     SheetMesh mesh;
     for (int j = 0; j <= up; ++j)
         for (int i = 0; i <= along; ++i) mesh.points.push_back({length * i / along, width * j / up});
@@ -41,6 +39,11 @@ SheetMesh sheet_mesh(MeshKind kind, double length, double width, double edge) {
                 mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
         }
     return mesh;
+}
+
+SheetMesh sheet_mesh(MeshKind kind, double length, double width, double edge) {
+    if (kind == MeshKind::unstructured) return of_panel(length, width, edge);
+    return halved_rectangles(kind, length, width, std::max(1, int(std::lround(length / edge))), std::max(1, int(std::lround(width / edge))));
 }
 
 SheetMesh with_mirror_image(const SheetMesh& half) {

@@ -18,10 +18,14 @@ struct SheetMesh {
     std::vector<Triangle> triangles; ///< counter-clockwise
 };
 
+/// Rectangles of [0, length] x [0, width], `along` by `up` of them, halved as aligned or alternating.
+SheetMesh halved_rectangles(MeshKind kind, double length, double width, int along, int up);
+
 /// [0, length] x [0, width], with edges of about `edge` (m).
 SheetMesh sheet_mesh(MeshKind kind, double length, double width, double edge);
 
-/// A mesh of x >= 0 with its mirror image in x = 0: two arms of a strip that its middle line holds, which each leaves exactly level.
+/// A mesh of x >= 0 with its mirror image in x = 0: two arms of a strip that its middle line holds. Their equilibrium is symmetric, so that
+/// each leaves the line exactly straight, whatever the element.
 SheetMesh with_mirror_image(const SheetMesh& half);
 
 /// The mesh as a garment of one panel, the warp along x.

@@ -246,7 +246,7 @@ private:
         std::vector<Chain> chains;
         for (const Part& part : parts)
             chains.push_back({part.edges, part.closed, part.line});
-        const std::vector<Crossing> found = find_crossings(chains, options_.max_extent);
+        const std::vector<LineCrossing> found = find_crossings(chains, options_.max_extent);
         constexpr std::size_t most = 5;
         for (std::size_t i = 0; i < std::min(most, found.size()); ++i)
             report_crossing(panel, parts, found[i]);
@@ -256,7 +256,7 @@ private:
         return found.empty();
     }
 
-    void report_crossing(const Panel& panel, const std::vector<Part>& parts, const Crossing& c) {
+    void report_crossing(const Panel& panel, const std::vector<Part>& parts, const LineCrossing& c) {
         const std::string at = " at " + said(c.at);
         const std::string a = parts[c.chain_a].prefix + "edge " + std::to_string(c.edge_a);
         const std::string b = parts[c.chain_b].prefix + "edge " + std::to_string(c.edge_b);

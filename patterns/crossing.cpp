@@ -90,7 +90,7 @@ public:
 
     /// Sort and sweep along the axis on which the segments overlap less: near-linear for every outline that
     /// is not a comb at 45 degrees.
-    std::vector<Crossing> run() {
+    std::vector<LineCrossing> run() {
         double spread[2] = {0, 0};
         for (const Segment& s : segments_)
             for (int d = 0; d < 2; ++d)
@@ -108,7 +108,7 @@ public:
                     look(segments_[j], s);
             active.push_back(i);
         }
-        std::vector<Crossing> found;
+        std::vector<LineCrossing> found;
         for (const auto& [key, crossing] : found_)
             found.push_back(crossing);
         return found;
@@ -149,7 +149,7 @@ private:
     }
 
     void add(const Segment& s, const Segment& t, const Vec2& at, bool touch) {
-        Crossing c{s.chain, s.edge, t.chain, t.edge, grid_.from(at), touch};
+        LineCrossing c{s.chain, s.edge, t.chain, t.edge, grid_.from(at), touch};
         if (std::tie(c.chain_b, c.edge_b) < std::tie(c.chain_a, c.edge_a)) {
             std::swap(c.chain_a, c.chain_b);
             std::swap(c.edge_a, c.edge_b);
@@ -163,12 +163,12 @@ private:
     double corner_;
     std::vector<Segment> segments_;
     std::vector<int> count_; ///< segments per chain
-    std::map<std::array<int, 4>, Crossing> found_;
+    std::map<std::array<int, 4>, LineCrossing> found_;
 };
 
 } // namespace
 
-std::vector<Crossing> find_crossings(const std::vector<Chain>& chains, double extent,
+std::vector<LineCrossing> find_crossings(const std::vector<Chain>& chains, double extent,
                                      const CrossingOptions& options) {
     for (const Chain& c : chains)
         if (!c.edges->empty()) {

@@ -14,7 +14,7 @@ struct Chain {
     bool may_touch = false; ///< an inner line: may end on other lines
 };
 
-struct Crossing {
+struct LineCrossing {
     int chain_a = 0, edge_a = 0, chain_b = 0, edge_b = 0; ///< (chain, edge) of a not after that of b
     Vec2 at = Vec2::Zero();                               ///< metres
     bool touch = false;                                   ///< meet without passing through each other
@@ -28,7 +28,7 @@ struct CrossingOptions {
 /// Pairs of edges that cross, or touch where they are not neighbours, each pair once, sorted; at most about a
 /// thousand. All coordinates must be finite and all edges of the panel's chains within `extent` metres of
 /// each other. Decided exactly for points rounded to a grid of extent / 2^24, at least a micrometre.
-std::vector<Crossing> find_crossings(const std::vector<Chain>& chains, double extent,
+std::vector<LineCrossing> find_crossings(const std::vector<Chain>& chains, double extent,
                                      const CrossingOptions& options = {});
 
 /// True when p lies inside the closed loop (even-odd), curves taken as polylines within 1e-5 m.

@@ -30,9 +30,9 @@ std::string along(const Pattern& pattern, int panel, int edge) {
 void expect_sound(const Pattern& pattern) {
     for (int p = 0; p < int(pattern.panels.size()); ++p) {
         const Panel& panel = pattern.panels[p];
-        const std::vector<Crossing> found = find_crossings({Chain{&panel.outline}}, CheckOptions{}.max_extent);
+        const std::vector<LineCrossing> found = find_crossings({Chain{&panel.outline}}, CheckOptions{}.max_extent);
         if (found.empty()) continue;
-        const Crossing& c = found[0];
+        const LineCrossing& c = found[0];
         throw std::invalid_argument("panel " + quoted(panel.name) + " overlaps itself when it is laid flat: its edge along " +
                                     along(pattern, p, c.edge_a) + " meets that along " + along(pattern, p, c.edge_b) +
                                     text(" at (%.1f, %.1f) cm; a further line that divides it, or ends in it, was expected", 100 * c.at.x(), 100 * c.at.y()));

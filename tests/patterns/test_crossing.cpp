@@ -37,7 +37,7 @@ TEST_CASE("crossings are those of the slow test of all pairs") {
         for (int i = 0; i < n; ++i)
             for (int j = i + 2; j < n; ++j)
                 if (!(i == 0 && j == n - 1) && cross(loop[i], loop[j])) slow.insert({i, j});
-        for (const Crossing& c : find_crossings({{&loop, true, false}}, 20)) {
+        for (const LineCrossing& c : find_crossings({{&loop, true, false}}, 20)) {
             CHECK_FALSE(c.touch);
             fast.insert({c.edge_a, c.edge_b});
         }

@@ -146,7 +146,7 @@ void recover_tee(const std::string& data, double edge) {
     const std::vector<FitGoal> goals{{"shape", shape_goal(before.garment, target.state.positions), 1e-3}};
     AlteredDrape drape(s.moving, start, before, s.avatar.body, s.fabrics, s.options, {1e-7});
     FitOptions options;
-    options.anew = true;
+    options.begin = [&](const Eigen::VectorXd&) { return target.state.positions; };
     const FitResult r = fit(drape, goals, start, target.state.positions, options);
     print("tee, mm off the shape, RMS", s, r, 1e3);
     const auto off = [&](const DrapeResult& d) { return 1e3 * miss(goals[0], d.garment, d.state.positions); };

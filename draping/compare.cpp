@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/compare.h"
 
-#include "geometry/bvh.h"
-#include "geometry/distance.h"
+#include "geometry/foot.h"
 #include "geometry/parallel.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 namespace toile {
@@ -37,28 +35,14 @@ Samples samples_of(const TriMesh& mesh, const std::vector<double>& areas) {
 
 std::vector<double> areas_of(const TriMesh& mesh) {
     std::vector<double> areas;
-    for (const auto& [a, b, c] : mesh.triangles) {
-        const Vec3& o = mesh.points[a];
-        areas.push_back(0.5 * (mesh.points[b] - o).cross(mesh.points[c] - o).norm());
-    }
+    for (const Triangle& t : mesh.triangles) areas.push_back(triangle_area(mesh.points, t));
     return areas;
 }
 
 Points nearest_on(const TriMesh& mesh, const Bvh& tree, const Samples& samples) {
     Points nearest(samples.points.size());
     parallel_for(int(nearest.size()), 256, [&](int begin, int end) {
-        for (int i = begin; i < end; ++i) {
-            const Vec3& p = samples.points[i];
-            const auto to_triangle = [&](int t) {
-                const auto& [a, b, c] = mesh.triangles[t];
-                return nearest_point_triangle(p, mesh.points[a], mesh.points[b], mesh.points[c]);
-            };
-            double limit = std::numeric_limits<double>::infinity();
-            const int t = tree.nearest(p, limit, [&](int k) { return to_triangle(k).squared; });
-            const auto& [a, b, c] = mesh.triangles[t];
-            nearest[i] =
-                p + gap_point_triangle(to_triangle(t), {p, mesh.points[a], mesh.points[b], mesh.points[c]});
-        }
+        for (int i = begin; i < end; ++i) nearest[i] = foot_on(mesh, tree, samples.points[i]).at;
     });
     return nearest;
 }

@@ -2,13 +2,11 @@
 #include "draping/decisions.h"
 
 #include "draping/energy/yarns.h"
-#include "geometry/bvh.h"
-#include "geometry/distance.h"
+#include "geometry/foot.h"
 #include "geometry/text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace toile {
 
@@ -177,19 +175,10 @@ double right_side_out(const Garment& g, const Points& x, const TriMesh& body) {
         const Triangle n = g.nodes(t);
         const Vec3 centre = (x[n[0]] + x[n[1]] + x[n[2]]) / 3;
         const Vec3 area = (x[n[1]] - x[n[0]]).cross(x[n[2]] - x[n[0]]);
-        const auto nearest = [&](int i) {
-            const Triangle& b = body.triangles[i];
-            return nearest_point_triangle(centre, body.points[b[0]], body.points[b[1]], body.points[b[2]]);
-        };
-        double limit = std::numeric_limits<double>::infinity();
-        const int i = tree.nearest(centre, limit, [&](int k) { return nearest(k).squared; });
-        if (i < 0) return 0;
-        const Nearest at = nearest(i);
-        Vec3 foot = Vec3::Zero();
-        for (int k = 0; k < 3; ++k)
-            foot += at.weight[k + 1] * body.points[body.triangles[i][k]];
+        const Foot foot = foot_on(body, tree, centre);
+        if (foot.triangle < 0) return 0;
         all += area.norm();
-        if (area.dot(centre - foot) > 0) out += area.norm();
+        if (area.dot(centre - foot.at) > 0) out += area.norm();
     }
     return all > 0 ? out / all : 0;
 }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "geometry/offset_surface.h"
 
-#include "geometry/bvh_impl.h"
-#include "geometry/distance.h"
 #include "geometry/edges.h"
+#include "geometry/foot.h"
 #include "geometry/isosurface.h"
 
 #include <cmath>
@@ -31,25 +30,19 @@ public:
     }
 
     double operator()(const Vec3& p) const {
-        double squared = std::numeric_limits<double>::infinity();
-        const auto nearest = [&](int t) {
-            const auto& [a, b, c] = body_.triangles[t];
-            return nearest_point_triangle(p, body_.points[a], body_.points[b], body_.points[c]);
-        };
-        const int t = tree_.nearest(p, squared, [&](int i) { return nearest(i).squared; });
-        const Nearest n = nearest(t);
-        const Triangle& corner = body_.triangles[t];
-        Vec3 on = Vec3::Zero(), normal = normal_[t];
+        const Foot foot = foot_on(body_, tree_, p);
+        const Triangle& corner = body_.triangles[foot.triangle];
+        Vec3 normal = normal_[foot.triangle];
         int count = 0, last = 0, absent = 0;
         for (int k = 0; k < 3; ++k) {
-            on += n.weight[k + 1] * body_.points[corner[k]];
-            const bool takes_part = n.weight[k + 1] > 0;
+            const bool takes_part = foot.nearest.weight[k + 1] > 0;
             count += takes_part;
             (takes_part ? last : absent) = k;
         }
-        if (count == 2) normal = at_edge_[edges_.of_triangle[t][absent]];
+        if (count == 2) normal = at_edge_[edges_.of_triangle[foot.triangle][absent]];
         if (count == 1) normal = at_point_[corner[last]];
-        return (p - on).dot(normal) < 0 ? -std::sqrt(squared) : std::sqrt(squared);
+        const double distance = std::sqrt(foot.nearest.squared);
+        return (p - foot.at).dot(normal) < 0 ? -distance : distance;
     }
 
 private:

@@ -15,7 +15,7 @@ namespace toile {
 struct GoalSpec {
     enum class Kind { shape, level, ease, stretch } kind = Kind::shape;
     std::string name;
-    std::string file;                    ///< shape: a garment of the same triangles
+    std::string file;                    ///< shape: a garment, or any surface
     std::vector<std::array<int, 2>> edges; ///< level: panel and edge
     std::optional<double> height;        ///< m, of level and ease
     double amount = 0;                   ///< ease: m; stretch: strain

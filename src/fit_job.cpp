@@ -29,9 +29,19 @@ constexpr double fit_tolerance = 1e-7; // residual of equilibria
 
 FitGoal shape_goal_of(const GoalSpec& spec, const DrapeResult& drape) {
     const ReadGarment read = read_garment(spec.file);
-    if (node_triangles(read.garment) != node_triangles(drape.garment))
-        throw InputError(spec.file + ": expected the triangles that the pattern has at this edge length, as toile drape writes them");
-    return {spec.name, shape_goal(drape.garment, read.x), spec.tolerance};
+    std::vector<Triangle> triangles = node_triangles(read.garment);
+    for (const Vec3& p : read.x)
+        if (!p.allFinite()) throw InputError(spec.file + ": has coordinates that are no numbers");
+    if (triangles == node_triangles(drape.garment)) return {spec.name, shape_goal(drape.garment, read.x), spec.tolerance};
+    Box cloth, target;
+    for (const Vec3& p : drape.state.positions) cloth.extend(p);
+    for (const Vec3& p : read.x) target.extend(p);
+    if (!cloth.intersects(target))
+        throw InputError(spec.file + text(": lies elsewhere, %.2f m from the drape of the pattern; expected a shape in metres where the "
+                                          "garment hangs", cloth.exteriorDistance(target)));
+    if (std::none_of(triangles.begin(), triangles.end(), [&](const Triangle& t) { return triangle_area(read.x, t) > 0; }))
+        throw InputError(spec.file + ": has no area, expected a surface");
+    return {spec.name, surface_goal(drape.garment, {read.x, std::move(triangles)}), spec.tolerance};
 }
 
 FitGoal level_goal_of(const GoalSpec& spec, const DrapeResult& drape) {
@@ -76,17 +86,23 @@ FitGoal goal_of(const GoalSpec& spec, const DrapeResult& drape, const TriMesh& b
     return {};
 }
 
-/// A shape is a place to begin: the equilibrium that is looked for is the one near it. Where it crosses something it is none.
-bool take_shape(const std::vector<FitGoal>& goals, const DrapeResult& drape, const TriMesh& body, Points& x) {
-    for (const FitGoal& goal : goals)
+/// A shape is a place to begin: the equilibrium that is looked for is the one near it. Where it crosses something it is none; to a
+/// surface of other triangles the cloth is drawn.
+std::function<Points(const Eigen::VectorXd&)> beginning(const std::vector<FitGoal>& goals, const TriMesh& body, AlteredDrape& drape,
+                                                        const DrapeResult& before) {
+    for (const FitGoal& goal : goals) {
         if (const auto* shape = std::get_if<ShapeGoal>(&goal.what)) {
             const IntersectionCount n =
-                count_intersections(node_triangles(drape.garment), shape->target, body, drape.garment.stitches);
-            if (n.cloth_avatar + n.cloth_cloth > 0) continue;
-            x = shape->target;
-            return true;
+                count_intersections(node_triangles(before.garment), shape->target, body, before.garment.stitches);
+            if (n.cloth_avatar + n.cloth_cloth == 0) return [shape](const Eigen::VectorXd&) { return shape->target; };
         }
-    return false;
+        if (const auto* surface = std::get_if<SurfaceGoal>(&goal.what))
+            return [surface, &drape, x = before.state.positions](const Eigen::VectorXd& amounts) mutable {
+                drape.draw_to(surface->target, amounts, x);
+                return x;
+            };
+    }
+    return nullptr;
 }
 
 /// The altered pattern draped from nothing, as whoever cuts it will: what is left of the goals.
@@ -169,12 +185,11 @@ FitOutcome run_fit(const FitJob& job) {
 
     AlteredDrape drape(moving, spec.start, before, body.mesh, input.fabrics, job.drape, {fit_tolerance});
     FitOptions options = spec.options;
-    Points x = before.state.positions;
-    options.anew = take_shape(goals, before, body.mesh, x);
+    options.begin = beginning(goals, body.mesh, drape, before);
     options.max_seconds = job.max_seconds;
     options.progress = job.progress;
     FitOutcome outcome;
-    outcome.result = fit(drape, goals, spec.start, x, options);
+    outcome.result = fit(drape, goals, spec.start, before.state.positions, options);
     const FitResult& r = outcome.result;
     const Pattern now = altered(pattern, spec.alterations, r.amounts);
     refuse_faults(now);

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/contact/carry.h"
 
-#include "geometry/bvh.h"
-#include "geometry/distance.h"
+#include "geometry/foot.h"
 #include "geometry/parallel.h"
 #include "sewing/sparse_solve.h"
 
 #include <cmath>
-#include <limits>
 
 namespace toile {
 
@@ -37,16 +35,9 @@ std::vector<Anchor> find_anchors(const Points& x, const TriMesh& body) {
     std::vector<Anchor> anchors(x.size());
     parallel_for(int(x.size()), 256, [&](int begin, int end) {
         for (int i = begin; i < end; ++i) {
-            const auto to = [&](int t) {
-                const Triangle& k = body.triangles[t];
-                return nearest_point_triangle(x[i], body.points[k[0]], body.points[k[1]], body.points[k[2]]);
-            };
-            double squared = std::numeric_limits<double>::infinity();
-            Anchor& a = anchors[i];
-            a.triangle = tree.nearest(x[i], squared, [&](int t) { return to(t).squared; });
-            const Nearest n = to(a.triangle);
-            a.corner = {n.weight[1], n.weight[2], n.weight[3]};
-            a.distance = std::sqrt(n.squared);
+            const Foot foot = foot_on(body, tree, x[i]);
+            const Nearest& n = foot.nearest;
+            anchors[i] = {foot.triangle, {n.weight[1], n.weight[2], n.weight[3]}, std::sqrt(n.squared)};
         }
     });
     return anchors;

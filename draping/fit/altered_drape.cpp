@@ -4,6 +4,7 @@
 #include "draping/fit/rest_force.h"
 #include "draping/hooks.h"
 #include "draping/settle_level.h"
+#include "geometry/foot.h"
 #include "patterns/plane.h"
 
 #include <stdexcept>
@@ -17,6 +18,11 @@ constexpr double rest_step = 1e-6;    // m of an alteration: slivers have edges 
 constexpr double anchored = 1e-6;     // residual at which friction that follows is taken as it is
 constexpr double solved = 1e-13;      // of a right side, in the norm of the preconditioner
 constexpr int most_conjugate = 400;
+constexpr double pull = 5e3;           // N/m per m2, to the nearest points of a surface: 0.3 mm off for the weight of poplin
+constexpr double strongest_pull = 100; // N per m2
+constexpr int drawing_rounds = 10;     // after each of which nearest points are found anew,
+constexpr int most_drawing = 30;       // of so many iterations at most,
+constexpr double drawn = 10;           // or to this residual
 
 } // namespace
 
@@ -83,6 +89,26 @@ SettleResult AlteredDrape::anchor(const Eigen::VectorXd& amounts, Points& x) {
     settle(*problem_, x, factor_, o);
     problem_->freeze_friction();
     return rest(amounts, x);
+}
+
+void AlteredDrape::draw_to(const TriMesh& surface, const Eigen::VectorXd& amounts, Points& x) {
+    take(amounts);
+    const Bvh tree(triangle_boxes(surface.points, surface.triangles, 0));
+    const std::vector<HookSpring> own = problem_->hooks;
+    problem_->rest_here(x, {});
+    std::vector<double> area(x.size(), 0.0);
+    for (int t = 0; t < int(garment_.triangles.size()); ++t)
+        for (const int n : garment_.nodes(t)) area[n] += rest_area(garment_.rest.edges[t]) / 3;
+    SettleOptions o;
+    o.tolerance = drawn;
+    o.max_iterations = most_drawing;
+    for (int round = 0; round < drawing_rounds; ++round) {
+        problem_->hooks = own;
+        for (int i = 0; i < int(x.size()); ++i)
+            problem_->hooks.push_back({i, foot_on(surface, tree, x[i]).at, Vec3::Ones(), pull * area[i], strongest_pull * area[i]});
+        settle(*problem_, x, factor_, o);
+    }
+    problem_->hooks = own;
 }
 
 bool AlteredDrape::solve(const Eigen::VectorXd& amounts, const Points& x, const Eigen::VectorXd& right,

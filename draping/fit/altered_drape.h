@@ -33,6 +33,10 @@ public:
     /// to rest with that. Frozen afterwards.
     SettleResult anchor(const Eigen::VectorXd& amounts, Points& x);
 
+    /// Pulls the garment of these amounts, without friction, to the nearest points of a surface: as near as its rest shape lets it without crossing
+    /// anything. Not at rest afterwards.
+    void draw_to(const TriMesh& surface, const Eigen::VectorXd& amounts, Points& x);
+
     /// At rest at `x` with these amounts: the solution of K lambda = r, K the exact second derivative of all that acts. False
     /// when K is not positive definite, as of a state that is no minimum.
     bool solve(const Eigen::VectorXd& amounts, const Points& x, const Eigen::VectorXd& r, Eigen::VectorXd& lambda);

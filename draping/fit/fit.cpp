@@ -99,7 +99,6 @@ struct Search {
     const std::vector<FitGoal>& goals;
     const FitOptions& options;
     std::chrono::steady_clock::time_point started;
-    const Points& shape; ///< where the first round began
     VectorXd cost; ///< 1/m2, of the square of an amount, before it is weighed by options.stay
     FitResult& result;
 
@@ -109,6 +108,7 @@ struct Search {
         double value;
     };
     std::vector<Known> known; ///< of this round, first where it began
+    Points shape;             ///< from which it began, when that is told
     bool met = false, stopped = false;
 
     double cost_of(const VectorXd& amounts) const { return cost.dot(amounts.cwiseAbs2()); }
@@ -129,7 +129,7 @@ struct Search {
         const auto nearest =
             std::min_element(known.begin(), known.end(), [&](const Known& a, const Known& b) { return off(a) < off(b); });
         if (nearest->amounts == amounts) return &*nearest;
-        Points x = options.anew ? shape : nearest->x;
+        Points x = options.begin ? shape : nearest->x;
         ++result.evaluations;
         try {
             if (!(drape.rest(amounts, x).residual <= at_rest)) return ++result.not_at_rest, nullptr;
@@ -281,12 +281,12 @@ FitResult fit(AlteredDrape& drape, const std::vector<FitGoal>& goals, const Vect
 
     double strictest = infinity;
     for (const FitGoal& g : goals) strictest = std::min(strictest, g.tolerance);
-    Search search{drape, goals, options, started, at_rest_there, cost_of(moving, start, strictest), r, {}};
+    Search search{drape, goals, options, started, cost_of(moving, start, strictest), r, {}, {}};
 
     double last = infinity;
     OptimiseResult found;
     for (r.rounds = 1; r.rounds <= options.max_rounds; ++r.rounds) {
-        if (options.anew) r.x = at_rest_there;
+        if (options.begin) r.x = search.shape = options.begin(r.amounts);
         drape.anchor(r.amounts, r.x);
         search.known = {{r.amounts, r.x, search.whole_value(r.amounts, r.x)}};
         const double now = search.known[0].value;

@@ -12,9 +12,9 @@ namespace toile {
 struct FitOptions {
     std::optional<Optimiser> optimiser; ///< none: slsqp where seams have to stay equal, lbfgs otherwise
     int max_evaluations = 60;     ///< equilibria in all, >= 1
-    /// Every equilibrium is looked for from where the first was, and friction holds the cloth there: for a shape that is told.
-    /// Otherwise from the nearest that is known, and friction holds it where the last round ended.
-    bool anew = false;
+    /// Where a round begins: friction holds the cloth there, and every equilibrium of the round is looked for from there; for a shape that is
+    /// told. None: where the last round ended, and from the nearest that is known.
+    std::function<Points(const Eigen::VectorXd& amounts)> begin;
     int max_rounds = 10;          ///< of friction: it is frozen in each and brought up to date after it, >= 1
     int round_evaluations = 12;   ///< equilibria of one, >= 1; cobyla, which learns slowly, has all in the first
     double max_seconds = 1e9;     ///< wall time

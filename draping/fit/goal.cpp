@@ -2,6 +2,8 @@
 #include "draping/fit/goal.h"
 
 #include "draping/energy/grain.h"
+#include "geometry/foot.h"
+#include "geometry/parallel.h"
 #include "geometry/slice.h"
 
 #include <algorithm>
@@ -25,6 +27,36 @@ Misses misses(const ShapeGoal& goal, const Garment&, const Points& x) {
         const Vec3 off = x[i] - goal.target[i];
         m.square += goal.share[i] * off.squaredNorm();
         m.gradient.emplace_back(int(i), 2 * goal.share[i] * off);
+    }
+    m.counts = std::sqrt(m.square);
+    return m;
+}
+
+Misses misses(const SurfaceGoal& goal, const Garment& garment, const Points& x) {
+    const TriMesh cloth{x, node_triangles(garment)};
+    const Bvh tree(triangle_boxes(x, cloth.triangles, 0));
+    std::vector<Vec3> from_target(x.size()), from_cloth(goal.corners.size());
+    std::vector<Foot> on_cloth(goal.corners.size());
+    parallel_for(int(x.size()), 256, [&](int begin, int end) {
+        for (int i = begin; i < end; ++i) from_target[i] = x[i] - foot_on(goal.target, goal.tree, x[i]).at;
+    });
+    parallel_for(int(on_cloth.size()), 256, [&](int begin, int end) {
+        for (int i = begin; i < end; ++i) {
+            on_cloth[i] = foot_on(cloth, tree, goal.target.points[i]);
+            from_cloth[i] = goal.target.points[i] - on_cloth[i].at;
+        }
+    });
+    // Where the nearest point lies is itself at a minimum, so its motion along the surface does not count.
+    Misses m;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        m.square += goal.share[i] * from_target[i].squaredNorm();
+        m.gradient.emplace_back(int(i), 2 * goal.share[i] * from_target[i]);
+    }
+    for (std::size_t i = 0; i < on_cloth.size(); ++i) {
+        m.square += goal.corners[i] * from_cloth[i].squaredNorm();
+        for (int k = 0; k < 3; ++k)
+            m.gradient.emplace_back(cloth.triangles[on_cloth[i].triangle][k],
+                                    -2 * goal.corners[i] * on_cloth[i].nearest.weight[k + 1] * from_cloth[i]);
     }
     m.counts = std::sqrt(m.square);
     return m;
@@ -124,6 +156,18 @@ Misses misses(const FitGoal& goal, const Garment& garment, const Points& x) {
 
 double square_of(double v) { return v * v; }
 
+/// A third of every triangle's area to each of its corners, together `sum`.
+std::vector<double> corner_shares(int corners, const std::vector<Triangle>& triangles, const std::vector<double>& areas, double sum) {
+    std::vector<double> share(corners, 0.0);
+    double all = 0;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+        for (const int n : triangles[t]) share[n] += areas[t] / 3;
+        all += areas[t];
+    }
+    for (double& s : share) s *= sum / all;
+    return share;
+}
+
 } // namespace
 
 double miss(const FitGoal& goal, const Garment& garment, const Points& x) { return misses(goal, garment, x).counts; }
@@ -141,14 +185,20 @@ void add_gradient(const std::vector<FitGoal>& goals, const Garment& garment, con
 }
 
 ShapeGoal shape_goal(const Garment& garment, Points target) {
-    ShapeGoal goal{std::move(target), std::vector<double>(garment.node_count, 0.0)};
-    double sum = 0;
-    for (std::size_t t = 0; t < garment.triangles.size(); ++t)
-        for (const int n : garment.nodes(int(t))) {
-            goal.share[n] += rest_area(garment.rest.edges[t]) / 3;
-            sum += rest_area(garment.rest.edges[t]) / 3;
-        }
-    for (double& share : goal.share) share /= sum;
+    std::vector<double> areas;
+    for (const Mat2& rest : garment.rest.edges) areas.push_back(rest_area(rest));
+    return {std::move(target), corner_shares(garment.node_count, node_triangles(garment), areas, 1)};
+}
+
+SurfaceGoal surface_goal(const Garment& garment, TriMesh target) {
+    std::vector<double> areas;
+    for (const Triangle& t : target.triangles) areas.push_back(triangle_area(target.points, t));
+    SurfaceGoal goal;
+    goal.share = shape_goal(garment, {}).share;
+    for (double& share : goal.share) share /= 2;
+    goal.corners = corner_shares(int(target.points.size()), target.triangles, areas, 0.5);
+    goal.tree = Bvh(triangle_boxes(target.points, target.triangles, 0));
+    goal.target = std::move(target);
     return goal;
 }
 

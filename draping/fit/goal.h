@@ -3,6 +3,8 @@
 
 // What a drape is asked to be.
 
+#include "geometry/bvh.h"
+#include "geometry/tri_mesh.h"
 #include "sewing/garment.h"
 
 #include <Eigen/Core>
@@ -17,6 +19,15 @@ namespace toile {
 struct ShapeGoal {
     Points target;             ///< by node
     std::vector<double> share; ///< weight of each node; they sum to 1
+};
+
+/// Cloth and a surface near each other, whatever its triangles: nodes by their nearest points of the surface, and the surface's corners by
+/// theirs of the cloth, so that cloth that ends too early is missed too. Misses are distances, m.
+struct SurfaceGoal {
+    TriMesh target;
+    Bvh tree;                    ///< of its triangles
+    std::vector<double> share;   ///< weight of each node; they sum to 1/2
+    std::vector<double> corners; ///< weight of each corner of the target; they sum to 1/2
 };
 
 /// Nodes of one height. Misses are heights over it, m.
@@ -40,11 +51,11 @@ struct StrainGoal {
     double most = 0; ///< strain
 };
 
-/// One goal. It is met when no miss of nodes, girths or strains is beyond the tolerance; a shape when their root mean
-/// square is not.
+/// One goal. It is met when no miss of nodes, girths or strains is beyond the tolerance; a shape or a surface when
+/// their root mean square is not.
 struct FitGoal {
     std::string name;
-    std::variant<ShapeGoal, LevelGoal, GirthGoal, StrainGoal> what;
+    std::variant<ShapeGoal, SurfaceGoal, LevelGoal, GirthGoal, StrainGoal> what;
     double tolerance = 0; ///< in the unit of its misses, > 0
 };
 
@@ -58,6 +69,8 @@ void add_gradient(const std::vector<FitGoal>& goals, const Garment& garment, con
 
 /// The goal of a shape in which every node weighs as its share of the cloth.
 ShapeGoal shape_goal(const Garment& garment, Points target);
+/// The goal of a surface in which nodes weigh as their share of the cloth, and corners as theirs of the target, which has some area.
+SurfaceGoal surface_goal(const Garment& garment, TriMesh target);
 /// The goal of a line of nodes in which each weighs as the length that it stands for.
 LevelGoal level_goal(const Garment& garment, const std::vector<std::vector<int>>& lines, std::optional<double> height);
 

@@ -111,6 +111,37 @@ Scene cantilever(MeshKind kind, const char* mesh_name, double membrane) {
     return s;
 }
 
+// A strip clamped on edge leans over sideways once gamma passes 18.18 (narrow, without a Poisson effect); here it is half as much again.
+constexpr double on_edge_gamma = 27;
+
+Scene strip_on_edge() {
+    Scene s;
+    s.name = "strip on edge";
+    s.quantity = "lean of the tip over the length";
+    s.edges = halved(arm / 7, 4);
+    s.make = [](double edge) {
+        const double bend = density * g * arm * arm * arm / on_edge_gamma;
+        const SheetMesh mesh = with_mirror_image(sheet_mesh(MeshKind::unstructured, arm, arm / 5, edge));
+        SceneCloth cloth = sheet(mesh, plain(1e4 * bend / (arm * arm), bend));
+        for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+            const Vec2& p = mesh.points[i];
+            const double along = p.x() / arm;
+            cloth.x.push_back({p.x(), p.y(), 0.3 * arm * along * along}); // to the side that it is to fall
+            if (std::abs(p.x()) < 1e-12) cloth.held.push_back(int(i));
+        }
+        return cloth;
+    };
+    s.measure = [](const SceneCloth& cloth, const Points& x) {
+        double most = 0, lean = 0;
+        int tip = 0;
+        for (const Vec3& p : cloth.x) most = std::max(most, p.x());
+        for (std::size_t i = 0; i < x.size(); ++i)
+            if (cloth.x[i].x() > most - 1e-9) lean += x[i].z(), ++tip;
+        return lean / tip / arm;
+    };
+    return s;
+}
+
 // A chain of length L between supports d apart, L / d = 1.5: sinh(u) / u = L / d, sag = d (cosh(u) - 1) / 2 u.
 constexpr double catenary_sag = 0.5026333, supports = 0.2; // of d; m
 constexpr double arc_angle = 1.4957824; // rad, half of an arc as long for its chord: sin a = 2/3 a
@@ -238,6 +269,7 @@ std::vector<Scene> chart_scenes() {
         for (const auto& [kind, name] : {std::pair{MeshKind::aligned, "aligned"}, {MeshKind::alternating, "alternating"},
                                          {MeshKind::unstructured, "unstructured"}})
             scenes.push_back(cantilever(kind, name, membrane));
+    scenes.push_back(strip_on_edge());
     scenes.push_back(catenary());
     scenes.push_back(cone());
     scenes.push_back(hung_square());

@@ -37,7 +37,7 @@ struct Scene {
 /// All of them, in the order in which they are charted:
 /// a strip clamped level at one end, weight * length^3 / stiffness = 10, on squares halved alike, halved in turn, and triangles of no direction,
 /// with a membrane of 1e4 and 1e6 times the plate's stiffness over length^2; a cloth hung by two ends as a chain; a sector of a disc sewn
-/// to a cone; a square hung by two corners.
+/// to a cone; a strip clamped on edge that leans over; a square hung by two corners.
 std::vector<Scene> chart_scenes();
 
 } // namespace toile

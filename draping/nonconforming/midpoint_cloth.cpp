@@ -16,10 +16,10 @@ constexpr double softest = 300;       // N/m, of bars to begin with: a softer me
 constexpr double stiff = 2400;        // where all of them get to, by a factor of
 constexpr double stiffer = 2;         // a round
 constexpr double nearly = 3000;       // times the strain to be kept, below which what is left is no want of rest:
-constexpr double fallen = 0.3;        // a bar of which a round leaves more than this share pushes against what is stiff, as the
-constexpr double stiffest = 1e5;      // body's barrier is, and becomes stiffer by itself, up to this
+constexpr double fallen = 0.3;        // a bar or tie of which a round leaves more than this share pushes against what is stiff, as
+constexpr double stiffest = 1e5;      // the body's barrier or a held node is, and becomes stiffer by itself, up to this
 constexpr double stiffer_alone = 3;
-constexpr double tie_stiffness = 2e3; // N/m
+constexpr double first_tie = 2e3;     // N/m
 
 } // namespace
 
@@ -28,6 +28,8 @@ MidpointCloth::MidpointCloth(const Garment& garment, const std::vector<Fabric>& 
       tension_(Eigen::VectorXd::Zero(cloth_.bars.size())), stiffness_(Eigen::VectorXd::Constant(cloth_.bars.size(), softest)),
       last_misfit_(Eigen::VectorXd::Constant(cloth_.bars.size(), std::numeric_limits<double>::infinity())) {
     held_.assign(nodes_, Vec3::Zero());
+    tie_ = Eigen::VectorXd::Constant(nodes_, first_tie);
+    last_gap_ = Eigen::VectorXd::Constant(nodes_, std::numeric_limits<double>::infinity());
     for (const Mat2& e : garment.rest.edges) {
         const Vec2 d[3] = {rest_edge(e, 0) / 2, rest_edge(e, 1) / 2, rest_edge(e, 2) / 2};
         Mat3 to_stress;
@@ -35,6 +37,11 @@ MidpointCloth::MidpointCloth(const Garment& garment, const std::vector<Fabric>& 
         to_stress_.push_back(to_stress);
         to_weights_.push_back(to_stress.inverse());
     }
+    beyond_compact_ = cloth_.bending.stiffness - cloth_.bending.compact;
+    constant_ = constants();
+}
+
+std::vector<MidpointCloth::Constant> MidpointCloth::constants() const {
     const auto& ghost = cloth_.midpoints.ghost;
     std::vector<Eigen::Triplet<double>> entries;
     const auto add = [&](int i, int j, double v) {
@@ -42,22 +49,23 @@ MidpointCloth::MidpointCloth(const Garment& garment, const std::vector<Fabric>& 
     };
     for (int i = 0; i < nodes_; ++i) {
         if (ghost.outerIndexPtr()[i] == ghost.outerIndexPtr()[i + 1]) continue;
-        add(i, i, tie_stiffness);
+        add(i, i, tie_[i]);
         for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator a(ghost, i); a; ++a) {
-            add(nodes_ + int(a.col()), i, -tie_stiffness * a.value());
+            add(nodes_ + int(a.col()), i, -tie_[i] * a.value());
             for (Eigen::SparseMatrix<double, Eigen::RowMajor>::InnerIterator b(ghost, i); b; ++b)
-                add(nodes_ + int(a.col()), nodes_ + int(b.col()), tie_stiffness * a.value() * b.value());
+                add(nodes_ + int(a.col()), nodes_ + int(b.col()), tie_[i] * a.value() * b.value());
         }
     }
     const auto& bend = cloth_.bending.compact;
-    beyond_compact_ = cloth_.bending.stiffness - cloth_.bending.compact;
     for (int j = 0; j < bend.outerSize(); ++j)
         for (Eigen::SparseMatrix<double>::InnerIterator e(bend, j); e; ++e) add(nodes_ + int(e.row()), nodes_ + j, e.value());
     const int n = nodes_ + cloth_.midpoints.count();
     Eigen::SparseMatrix<double> sum(n, n);
     sum.setFromTriplets(entries.begin(), entries.end());
+    std::vector<Constant> found;
     for (int j = 0; j < n; ++j)
-        for (Eigen::SparseMatrix<double>::InnerIterator e(sum, j); e; ++e) constant_.push_back({int(e.row()), j, -1, e.value()});
+        for (Eigen::SparseMatrix<double>::InnerIterator e(sum, j); e; ++e) found.push_back({int(e.row()), j, -1, e.value()});
+    return found;
 }
 
 std::vector<double> MidpointCloth::masses(std::vector<double> of_nodes) const {
@@ -90,10 +98,15 @@ double MidpointCloth::pull(int b, const Points& x) const {
 }
 
 double MidpointCloth::largest_gap(const Points& x) const {
-    double most = 0, mean = 0;
+    double most = 0;
     for (const Vec3& gap : gaps(x)) most = std::max(most, gap.norm());
+    return most / mean_length();
+}
+
+double MidpointCloth::mean_length() const {
+    double mean = 0;
     for (const Bar& bar : cloth_.bars) mean += bar.length / double(cloth_.bars.size());
-    return most / mean;
+    return mean;
 }
 
 std::optional<double> MidpointCloth::kept_strain(const Points& x) const { return largest_triangle_strain(garment_, midpoints(x)); }
@@ -103,7 +116,7 @@ double MidpointCloth::value(const Points& x) const {
     double sum = bend_value(cloth_.bending, m);
     const Eigen::VectorXd c = misfit(cloth_.bars, m);
     for (Eigen::Index b = 0; b < c.size(); ++b) sum += (tension_[b] + 0.5 * stiffness_[b] * c[b]) * c[b];
-    for (int i = 0; i < nodes_; ++i) sum += held_[i].dot(gap[i]) + 0.5 * tie_stiffness * gap[i].squaredNorm();
+    for (int i = 0; i < nodes_; ++i) sum += held_[i].dot(gap[i]) + 0.5 * tie_[i] * gap[i].squaredNorm();
     return sum;
 }
 
@@ -111,7 +124,7 @@ void MidpointCloth::add_gradient(const Points& x, Eigen::VectorXd& g) const {
     const Points m = midpoints(x);
     Points tie = gaps(x);
     for (int i = 0; i < nodes_; ++i) {
-        tie[i] = held_[i] + tie_stiffness * tie[i];
+        tie[i] = held_[i] + tie_[i] * tie[i];
         g.segment<3>(3 * i) += tie[i];
     }
     const Points bend = bend_gradient(cloth_.bending, m), back = from_ghost_nodes(cloth_.midpoints, tie);
@@ -177,16 +190,23 @@ bool MidpointCloth::take_up(const Points& x) {
     const double strain = *kept_strain(x), gap = largest_gap(x);
     const Eigen::VectorXd c = misfit(cloth_.bars, midpoints(x));
     tension_ += stiffness_.cwiseProduct(c);
-    const Points gap_now = gaps(x);
-    for (int i = 0; i < nodes_; ++i) held_[i] += tie_stiffness * gap_now[i];
-    for (Eigen::Index b = 0; b < c.size(); ++b) {
-        const bool stays = std::abs(c[b]) > std::max(kept * cloth_.bars[b].length, fallen * last_misfit_[b]);
-        if (stiffness_[b] < stiff)
-            stiffness_[b] = std::min(stiffer * stiffness_[b], stiff);
-        else if (stays && strain < nearly * kept)
-            stiffness_[b] = std::min(stiffer_alone * stiffness_[b], stiffest);
-    }
+    const auto harder = [&](double stiffness, double left, double last, double length) {
+        const bool stays = left > std::max(kept * length, fallen * last);
+        return stays && strain < nearly * kept ? std::min(stiffer_alone * stiffness, stiffest) : stiffness;
+    };
+    for (Eigen::Index b = 0; b < c.size(); ++b)
+        stiffness_[b] = stiffness_[b] < stiff ? std::min(stiffer * stiffness_[b], stiff)
+                                              : harder(stiffness_[b], std::abs(c[b]), last_misfit_[b], cloth_.bars[b].length);
     last_misfit_ = c.cwiseAbs();
+    const Points gap_now = gaps(x);
+    const double length = mean_length();
+    for (int i = 0; i < nodes_; ++i) {
+        held_[i] += tie_[i] * gap_now[i];
+        tie_[i] = harder(tie_[i], gap_now[i].norm(), last_gap_[i], length);
+        last_gap_[i] = gap_now[i].norm();
+    }
+    const std::vector<Constant> now = constants(); // of the same blocks
+    for (std::size_t k = 0; k < now.size(); ++k) constant_[k].value = now[k].value;
     return std::max(strain, gap) > kept;
 }
 

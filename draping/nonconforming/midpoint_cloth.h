@@ -48,6 +48,8 @@ private:
     };
 
     Points gaps(const Points& x) const;
+    double mean_length() const; ///< m, of bars
+    std::vector<Constant> constants() const;
     double pull(int bar, const Points& x) const;
 
     const Garment& garment_;
@@ -59,7 +61,9 @@ private:
     Eigen::VectorXd tension_;            ///< N per bar
     Points held_;                        ///< N per node
     Eigen::VectorXd stiffness_;          ///< N/m per bar
+    Eigen::VectorXd tie_;                ///< N/m per node
     Eigen::VectorXd last_misfit_;        ///< m per bar, when forces were last taken up
+    Eigen::VectorXd last_gap_;           ///< m per node, likewise
     Eigen::SparseMatrix<double, Eigen::RowMajor> beyond_compact_;
     std::vector<Constant> constant_;     ///< lower triangle of compact bending and ties
     std::vector<int> bar_slot_;

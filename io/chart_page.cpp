@@ -9,16 +9,6 @@ namespace toile {
 
 namespace {
 
-constexpr const char* style = R"(
-body { font-family: sans-serif; max-width: 900px; margin: 2em auto; padding: 0 1em; color: #222; }
-svg { max-width: 100%; height: auto; }
-table { border-collapse: collapse; font-size: 13px; }
-th, td { padding: 2px 10px; text-align: right; border-bottom: 1px solid #e4e4e4; }
-th:first-child, td:first-child, td.words { text-align: left; }
-section { margin-bottom: 3em; }
-.fails { color: #a02020; }
-)";
-
 std::string seconds(double s) { return text(s < 0.1 ? "%.4f" : "%.3g", s); }
 
 std::string fastest_cell(const ChartPoint* p) {
@@ -38,9 +28,8 @@ std::string row(const ChartPoint& p) {
 } // namespace
 
 std::string chart_page(const Chart& chart, const ChartMachine& machine) {
-    std::string page = std::string("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>Error against time</title>\n<style>") +
-                       style + "</style>\n</head>\n<body>\n<h1>Error against time</h1>\n<p>" + escaped(machine.version) + " on " +
-                       escaped(machine.processor) + text(", %d threads; ", machine.threads) + escaped(machine.blas) +
+    std::string page = "<p>" + escaped(machine.version) + " on " + escaped(machine.processor) +
+                       text(", %d threads; ", machine.threads) + escaped(machine.blas) +
                        ". Times are medians: processor time on one thread, wall time on all.</p>\n";
     page += "<table>\n<tr><th>scene</th>";
     for (const double error : marked_errors) page += text("<th>fastest within %g %%</th>", 100 * error);
@@ -59,7 +48,7 @@ std::string chart_page(const Chart& chart, const ChartMachine& machine) {
             if (p.scene == s.scene.name) page += row(p);
         page += "</table>\n</details>\n</section>\n";
     }
-    return page + "</body>\n</html>\n";
+    return html_page("Error against time", page);
 }
 
 } // namespace toile

@@ -2,7 +2,7 @@
 #include "io/chart_svg.h"
 
 #include "geometry/text.h"
-#include "io/markup.h"
+#include "io/svg_drawing.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,10 +58,7 @@ public:
         curves();
         marks();
         legend();
-        return text("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %g %g\" width=\"%g\" height=\"%g\" font-family=\"sans-serif\" "
-                    "font-size=\"12\" role=\"img\">\n<title>",
-                    width, height, width, height) +
-               escaped(scene_.scene.name) + "</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n" + body_ + "</svg>\n";
+        return drawing_.document(scene_.scene.name, width, height);
     }
 
 private:
@@ -73,11 +70,9 @@ private:
         const double e = std::log10(std::clamp(std::isfinite(error) ? error : most_error, least_error, most_error));
         return height - bottom - (height - top - bottom) * std::clamp((e - error_.low) / double(error_.high - error_.low), 0.0, 1.0);
     }
-    void line(double x0, double y0, double x1, double y1, const char* style) {
-        body_ += text("<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" %s/>\n", x0, y0, x1, y1, style);
-    }
+    void line(double x0, double y0, double x1, double y1, const char* style) { drawing_.line(x0, y0, x1, y1, style); }
     void words(double x, double y, const char* anchor, const std::string& what, const char* more = "") {
-        body_ += text("<text x=\"%.1f\" y=\"%.1f\" text-anchor=\"%s\" %s>", x, y, anchor, more) + escaped(what) + "</text>\n";
+        drawing_.words(x, y, anchor, what, more);
     }
 
     void axes() {
@@ -101,7 +96,7 @@ private:
         line(left, height - bottom, width - right, height - bottom, "stroke=\"#333333\"");
         line(left, top, left, height - bottom, "stroke=\"#333333\"");
         words((left + width - right) / 2, height - 14, "middle", "processor time on one thread");
-        body_ += text("<text transform=\"translate(16 %.1f) rotate(-90)\" text-anchor=\"middle\">error</text>\n", (top + height - bottom) / 2);
+        drawing_.words_upward(16, (top + height - bottom) / 2, "error");
     }
 
     void front() {
@@ -112,7 +107,7 @@ private:
         std::string path;
         for (const ChartPoint* p : best) path += text("%s%.1f %.1f", path.empty() ? "M" : " L", x(p->seconds_cpu), y(p->error));
         if (best.size() > 1)
-            body_ += "<path d=\"" + path + "\" fill=\"none\" stroke=\"#bbbbbb\" stroke-width=\"9\" stroke-linejoin=\"round\" stroke-opacity=\"0.6\"/>\n";
+            drawing_.body += "<path d=\"" + path + "\" fill=\"none\" stroke=\"#bbbbbb\" stroke-width=\"9\" stroke-linejoin=\"round\" stroke-opacity=\"0.6\"/>\n";
     }
 
     void curves() {
@@ -133,12 +128,11 @@ private:
                                      (p->error_solver ? text(", %.2g %% by the solver", 100 * *p->error_solver) : "") +
                                      (p->failure.empty() ? "" : "; " + p->failure);
             if (p->failure.empty())
-                body_ += text("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"><title>", at, up, colour(p->method)) + escaped(what) +
-                         "</title></circle>\n";
+                drawing_.titled(text("circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"", at, up, colour(p->method)), what);
             else
-                body_ += text("<path d=\"M%.1f %.1f l8 8 m0 -8 l-8 8\" stroke=\"%s\" stroke-width=\"2\" fill=\"none\"><title>", at - 4, up - 4,
-                              colour(p->method)) +
-                         escaped(what) + "</title></path>\n";
+                drawing_.titled(text("path d=\"M%.1f %.1f l8 8 m0 -8 l-8 8\" stroke=\"%s\" stroke-width=\"2\" fill=\"none\"", at - 4, up - 4,
+                                     colour(p->method)),
+                                what);
         }
     }
 
@@ -147,12 +141,12 @@ private:
         const double at = width - right + 18;
         for (const Method m : all_methods()) {
             if (std::none_of(points_.begin(), points_.end(), [m](const ChartPoint* p) { return p->method == m; })) continue;
-            body_ += text("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"/>\n", at, down - 4, colour(m));
+            drawing_.body += text("<circle cx=\"%.1f\" cy=\"%.1f\" r=\"4\" fill=\"%s\"/>\n", at, down - 4, colour(m));
             words(at + 12, down, "start", to_string(m));
             down += 18;
         }
         down += 6;
-        body_ += text("<path d=\"M%.1f %.1f l8 8 m0 -8 l-8 8\" stroke=\"#333333\" stroke-width=\"2\"/>\n", at - 4, down - 8);
+        drawing_.body += text("<path d=\"M%.1f %.1f l8 8 m0 -8 l-8 8\" stroke=\"#333333\" stroke-width=\"2\"/>\n", at - 4, down - 8);
         words(at + 12, down, "start", "not at rest");
         down += 18;
         line(at - 6, down - 4, at + 6, down - 4, "stroke=\"#bbbbbb\" stroke-width=\"9\"");
@@ -162,7 +156,7 @@ private:
     const ChartScene& scene_;
     std::vector<const ChartPoint*> points_;
     Decades time_{}, error_{};
-    std::string body_;
+    SvgDrawing drawing_;
 };
 
 } // namespace

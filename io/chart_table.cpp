@@ -2,20 +2,13 @@
 #include "io/chart_table.h"
 
 #include "geometry/text.h"
+#include "io/markup.h"
 
 #include <nlohmann/json.hpp>
 
 namespace toile {
 
 namespace {
-
-/// A field of a table, in quotes where it has to be.
-std::string field(const std::string& words) {
-    if (words.find_first_of(",\"\n") == std::string::npos) return words;
-    std::string quoted = "\"";
-    for (const char c : words) quoted += c == '"' ? "\"\"" : std::string(1, c);
-    return quoted + '"';
-}
 
 std::string status(const ChartPoint& p) { return p.failure.empty() ? "converged" : p.failure; }
 
@@ -24,9 +17,9 @@ std::string status(const ChartPoint& p) { return p.failure.empty() ? "converged"
 std::string chart_csv(const Chart& chart) {
     std::string csv = "scene,method,edge_length,step,error,error_solver,seconds_cpu,seconds_wall,status\n";
     for (const ChartPoint& p : chart.points)
-        csv += field(p.scene) + ',' + to_string(p.method) + text(",%.6g,%.6g,%.6g,", p.edge_length, p.step, p.error) +
+        csv += csv_field(p.scene) + ',' + to_string(p.method) + text(",%.6g,%.6g,%.6g,", p.edge_length, p.step, p.error) +
                (p.error_solver ? text("%.6g", *p.error_solver) : "") + text(",%.6g,%.6g,", p.seconds_cpu, p.seconds_wall) +
-               field(status(p)) + '\n';
+               csv_field(status(p)) + '\n';
     return csv;
 }
 

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <random>
 
 namespace toile {
 
@@ -44,6 +46,28 @@ SheetMesh halved_rectangles(MeshKind kind, double length, double width, int alon
 SheetMesh sheet_mesh(MeshKind kind, double length, double width, double edge) {
     if (kind == MeshKind::unstructured) return of_panel(length, width, edge);
     return halved_rectangles(kind, length, width, std::max(1, int(std::lround(length / edge))), std::max(1, int(std::lround(width / edge))));
+}
+
+SheetMesh jittered(SheetMesh mesh, double share, unsigned seed) {
+    std::vector<double> shortest(mesh.points.size(), INFINITY);
+    std::map<std::array<int, 2>, int> sides; // of every edge
+    for (const Triangle& t : mesh.triangles)
+        for (int k = 0; k < 3; ++k) {
+            const int a = t[k], b = t[(k + 1) % 3];
+            ++sides[{std::min(a, b), std::max(a, b)}];
+            const double length = (mesh.points[b] - mesh.points[a]).norm();
+            shortest[a] = std::min(shortest[a], length);
+            shortest[b] = std::min(shortest[b], length);
+        }
+    for (const auto& [ends, count] : sides)
+        if (count == 1) shortest[ends[0]] = shortest[ends[1]] = 0; // on the border
+    std::mt19937_64 random(seed);
+    const auto off = [&] { return 2 * double(random() >> 11) * 0x1p-53 - 1; }; // distributions differ between libraries, raw bits do not
+    for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+        const double x = off(), y = off();
+        mesh.points[i] += share * shortest[i] * Vec2(x, y);
+    }
+    return mesh;
 }
 
 SheetMesh with_mirror_image(const SheetMesh& half) {

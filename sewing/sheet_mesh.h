@@ -24,6 +24,9 @@ SheetMesh halved_rectangles(MeshKind kind, double length, double width, int alon
 /// [0, length] x [0, width], with edges of about `edge` (m).
 SheetMesh sheet_mesh(MeshKind kind, double length, double width, double edge);
 
+/// The same with every point inside moved by up to `share` of its shortest edge in each coordinate; different for every `seed`.
+SheetMesh jittered(SheetMesh mesh, double share, unsigned seed);
+
 /// A mesh of x >= 0 with its mirror image in x = 0: two arms of a strip that its middle line holds. Their equilibrium is symmetric, so that
 /// each leaves the line exactly straight, whatever the element.
 SheetMesh with_mirror_image(const SheetMesh& half);

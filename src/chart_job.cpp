@@ -6,9 +6,9 @@
 #include "io/chart_svg.h"
 #include "io/write_file.h"
 #include "sewing/blas.h"
+#include "src/file_name.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <fstream>
 
@@ -43,16 +43,6 @@ std::string processor() {
     for (std::string line; std::getline(in, line);)
         if (line.starts_with("model name")) return line.substr(std::min(line.size(), line.find(':') + 2));
     return "an unknown processor";
-}
-
-std::string file_name(const std::string& scene) {
-    std::string name;
-    for (const char c : scene)
-        if (std::isalnum(static_cast<unsigned char>(c)))
-            name += c;
-        else if (!name.empty() && name.back() != '-')
-            name += '-';
-    return name;
 }
 
 } // namespace

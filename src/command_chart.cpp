@@ -75,16 +75,9 @@ int chart_command(const ChartArguments& a, const Console& console) {
 void add_chart(CLI::App& app, Command& chosen) {
     CLI::App& command = *app.add_subcommand("chart", "Chart error against time, by scenes with known answers, methods and mesh sizes");
     const auto a = std::make_shared<ChartArguments>();
-    command.add_option("-o,--output", a->job.page, "Page to write, .html; its data and pictures go beside it as .csv, .json and .svg")
-        ->type_name("FILE")
-        ->required()
-        ->check([](const std::string& path) { return path.ends_with(".html") ? std::string() : path + " does not end in .html"; });
+    add_page(command, a->job.page);
     command.add_option("--scene", a->job.scenes, "Scene, or what the names of several begin with; may be repeated (default: all)")->type_name("NAME");
-    std::vector<std::string> names;
-    for (const Method m : all_methods()) names.push_back(to_string(m));
-    command.add_option("--method", a->methods, "Method; may be repeated (default: all)")
-        ->check(CLI::IsMember(names).description(""))
-        ->type_name("NAME");
+    add_methods(command, a->methods);
     command.add_flag("--quick", a->quick, "Three meshes instead of four, one step size instead of three, one run of each instead of five, given up after 0.5 s");
     add_duration(command, "max-seconds", a->max_seconds, 0.001, 1e6, "Time after which a run has failed (default 20 s; with --quick 0.5 s)");
     add_run_options(command, a->threads, a->quiet, a->json);

@@ -63,7 +63,7 @@ int run_command_line(const std::vector<std::string>& arguments, const Console& c
                "still tangled (the best state is still written). 'toile COMMAND --help' explains a command.");
     Command chosen;
     for (const auto add : {add_drape, add_check, add_flat, add_form, add_inspect, add_untangle, add_compare, add_rest, add_cut,
-                           add_fit, add_chart})
+                           add_fit, add_chart, add_stability})
         add(app, chosen);
     if (const std::string sentence = unknown_command(app, arguments); !sentence.empty())
         return complain(console, sentence, exit_command_line);

@@ -42,5 +42,6 @@ void add_rest(CLI::App& app, Command& chosen);
 void add_cut(CLI::App& app, Command& chosen);
 void add_fit(CLI::App& app, Command& chosen);
 void add_chart(CLI::App& app, Command& chosen);
+void add_stability(CLI::App& app, Command& chosen);
 
 } // namespace toile

@@ -17,20 +17,6 @@ constexpr double g = 9.81;       // m/s2
 constexpr double density = 0.15; // kg/m2
 constexpr double pi = std::numbers::pi;
 
-/// Alike in all directions, without a Poisson effect.
-Fabric plain(double stretch, double bend) {
-    Fabric f;
-    f.name = "plain";
-    f.density = density;
-    f.stretch_warp = f.stretch_weft = stretch;
-    f.shear = stretch / 2;
-    f.bend_warp = f.bend_weft = bend;
-    f.bend_twist = bend / 2;
-    f.compression = 1;
-    f.limit_warp = f.limit_weft = f.limit_shear = 1; // none that anything here comes near
-    return f;
-}
-
 std::vector<double> halved(double edge, int times) {
     std::vector<double> edges;
     for (int k = 0; k < times; ++k) edges.push_back(edge / (1 << k));
@@ -93,7 +79,7 @@ Scene cantilever(MeshKind kind, const char* mesh_name, double membrane) {
     s.make = [kind, membrane](double edge) {
         const double bend = density * g * arm * arm * arm / cantilever_gamma;
         const SheetMesh mesh = with_mirror_image(sheet_mesh(kind, arm, arm / 4, edge));
-        SceneCloth cloth = sheet(mesh, plain(membrane * bend / (arm * arm), bend));
+        SceneCloth cloth = sheet(mesh, plain_cloth(membrane * bend / (arm * arm), bend));
         for (std::size_t i = 0; i < mesh.points.size(); ++i) {
             const Vec2& p = mesh.points[i];
             cloth.x.push_back({p.x(), 0, -p.y()});
@@ -155,7 +141,7 @@ Scene catenary() {
     s.make = [](double edge) {
         const double length = 1.5 * supports;
         const SheetMesh mesh = sheet_mesh(MeshKind::alternating, length, 0.06, edge);
-        SceneCloth cloth = sheet(mesh, plain(1e4, 1e-7)); // stretched by 5e-5, and too limp to tell from a chain
+        SceneCloth cloth = sheet(mesh, plain_cloth(1e4, 1e-7)); // stretched by 5e-5, and too limp to tell from a chain
         for (std::size_t i = 0; i < mesh.points.size(); ++i) { // an arc of a circle: from a taut V some meshes keep its fold as a dimple
             const double along = mesh.points[i].x() / length, angle = arc_angle * (2 * along - 1), radius = length / (2 * arc_angle);
             cloth.x.push_back({radius * std::sin(angle), radius * (std::cos(arc_angle) - std::cos(angle)), -mesh.points[i].y()});
@@ -212,7 +198,7 @@ Scene cone() {
             edges.push_back(e);
         }
         cloth.garment = mesh_garment(triangles, nodes, std::move(edges));
-        cloth.fabrics = {plain(2000, 1e-5)};
+        cloth.fabrics = {plain_cloth(2000, 1e-5)};
         return cloth;
     };
     s.measure = [](const SceneCloth& cloth, const Points& x) {
@@ -243,7 +229,7 @@ Scene hung_square() {
     s.edges = halved(0.03, 4);
     s.make = [](double edge) {
         const SheetMesh mesh = sheet_mesh(MeshKind::unstructured, square_side, square_side, edge);
-        SceneCloth cloth = sheet(mesh, plain(1e3, 1e-3));
+        SceneCloth cloth = sheet(mesh, plain_cloth(1e3, 1e-3));
         for (std::size_t i = 0; i < mesh.points.size(); ++i) { // folded down its middle
             const double across = mesh.points[i].x() - square_side / 2, down = mesh.points[i].y() - square_side;
             const double out = std::sqrt(1 - square_apart * square_apart) * (square_side / 2 - std::abs(across));
@@ -262,6 +248,19 @@ Scene hung_square() {
 }
 
 } // namespace
+
+Fabric plain_cloth(double stretch, double bend) {
+    Fabric f;
+    f.name = "plain";
+    f.density = density;
+    f.stretch_warp = f.stretch_weft = stretch;
+    f.shear = stretch / 2;
+    f.bend_warp = f.bend_weft = bend;
+    f.bend_twist = bend / 2;
+    f.compression = 1;
+    f.limit_warp = f.limit_weft = f.limit_shear = 1; // none that anything here comes near
+    return f;
+}
 
 std::vector<Scene> chart_scenes() {
     std::vector<Scene> scenes;

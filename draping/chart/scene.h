@@ -23,6 +23,9 @@ struct SceneCloth {
     double gravity = 0;          ///< m/s2 along -y
 };
 
+/// Cloth of 0.15 kg/m2 alike in all directions, without a Poisson effect, of so much N/m and N m; shear is half the former.
+Fabric plain_cloth(double stretch, double bend);
+
 struct Scene {
     std::string name;     ///< "cantilever, aligned, 1e4"
     std::string quantity; ///< what the number is: "drop over reach of the tip"

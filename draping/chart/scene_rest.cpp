@@ -49,9 +49,7 @@ SceneRest by_newton(const SceneCloth& cloth, const SceneRestOptions& options, co
 }
 
 SceneRest by_motion(const SceneCloth& cloth, const SceneRestOptions& options, const Deadline& deadline) {
-    ResponseOptions alone;
-    alone.self = false;
-    const std::unique_ptr<Response> response = make_response(ContactResponse::impulse, contact_cloth(cloth.garment), {}, alone);
+    const std::unique_ptr<Response> response = no_response(cloth.garment);
     std::vector<char> held(cloth.x.size(), 0);
     for (const int i : cloth.held) held[i] = 1;
     MethodOptions how;
@@ -76,6 +74,12 @@ SceneRest by_motion(const SceneCloth& cloth, const SceneRestOptions& options, co
 SceneRest rest_of(const SceneCloth& cloth, const SceneRestOptions& options) {
     const Deadline deadline(options.max_seconds);
     return settles(options.method) ? by_newton(cloth, options, deadline) : by_motion(cloth, options, deadline);
+}
+
+std::unique_ptr<Response> no_response(const Garment& garment) {
+    ResponseOptions alone;
+    alone.self = false;
+    return make_response(ContactResponse::impulse, contact_cloth(garment), {}, alone);
 }
 
 Method newton_twin(Method method) {

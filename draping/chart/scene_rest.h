@@ -2,6 +2,7 @@
 #pragma once
 
 #include "draping/chart/scene.h"
+#include "draping/contact/response.h"
 #include "draping/method.h"
 
 namespace toile {
@@ -22,6 +23,9 @@ struct SceneRest {
 
 /// Brings a scene to rest as `toile drape` would with this method and the barrier: by Newton's steps, or by a motion that air slows.
 SceneRest rest_of(const SceneCloth& cloth, const SceneRestOptions& options);
+
+/// Of cloth that meets nothing, itself included.
+std::unique_ptr<Response> no_response(const Garment& garment);
 
 /// The method whose Newton's steps find the rest that this one's motion tends to; itself for one that settles.
 Method newton_twin(Method method);

@@ -49,8 +49,8 @@ public:
     }
     double border(std::size_t k) const { return at(borders_[k]); }
     bool holds(double value) const { return value >= borders_.front() && value <= borders_.back(); }
-    /// Within the axis.
-    double held(double value) const { return std::clamp(value, borders_.front(), borders_.back()); }
+    double lowest() const { return borders_.front(); }
+    double highest() const { return borders_.back(); }
     std::vector<double> decades() const {
         std::vector<double> all;
         for (int k = int(std::ceil(std::log10(borders_.front()))); k <= std::log10(borders_.back()); ++k) all.push_back(std::pow(10, k));
@@ -111,21 +111,26 @@ private:
         drawing_.words_upward(14, (top + height - bottom) / 2, map_.scene.axis);
     }
 
-    /// By kind of mesh and stiffness, the mean over jitters.
+    /// Of every mesh, where it is within the picture.
     void boundaries() {
-        std::map<MeshKind, std::map<double, std::pair<double, int>>> logs;
-        for (const StabilityRun& run : map_.runs) {
-            auto& [sum, count] = logs[run.mesh.kind][run.stiffness];
-            const double lowest = map_.values.front() * 1e-3, highest = map_.values.back() * 1e3;
-            sum += std::log(std::clamp(run.boundary, lowest, highest));
-            ++count;
-        }
-        for (const auto& [kind, line] : logs) {
-            std::string path;
-            for (const auto& [stiffness, mean] : line)
-                path += text("%s%.1f %.1f", path.empty() ? "M" : " L", x_.at(stiffness), y_.at(y_.held(std::exp(mean.first / mean.second))));
-            drawing_.body += "<path d=\"" + path + text("\" fill=\"none\" stroke=\"#000000\" stroke-width=\"2\" %s/>\n", dashes(kind));
-        }
+        const std::size_t rows = map_.values.size(), meshes = map_.runs.size() / map_.stiffness.size() / rows;
+        for (std::size_t m = 0; m < meshes; ++m)
+            for (std::size_t i = 0; i + 1 < map_.stiffness.size(); ++i) {
+                const StabilityRun &a = map_.runs[(i * meshes + m) * rows], &b = map_.runs[((i + 1) * meshes + m) * rows];
+                const auto drawn = [](const StabilityRun& r) { return r.boundary > 0 && std::isfinite(r.boundary); };
+                if (!drawn(a) || !drawn(b)) continue;
+                const double slope = std::log(b.boundary / a.boundary) / std::log(b.stiffness / a.stiffness);
+                double from = a.stiffness, to = b.stiffness; // cut where it leaves the picture
+                for (const double edge : {y_.lowest(), y_.highest()}) {
+                    if ((a.boundary < edge) == (b.boundary < edge)) continue;
+                    const double cut = a.stiffness * std::pow(edge / a.boundary, 1 / slope);
+                    (y_.holds(a.boundary) || (a.boundary < edge) == (edge == y_.highest()) ? to : from) = cut;
+                }
+                const double middle = std::sqrt(from * to);
+                if (!y_.holds(a.boundary * std::pow(middle / a.stiffness, slope))) continue;
+                drawing_.line(x_.at(from), y_.at(a.boundary * std::pow(from / a.stiffness, slope)), x_.at(to),
+                              y_.at(a.boundary * std::pow(to / a.stiffness, slope)), text("stroke=\"#000000\" stroke-width=\"1.3\" %s", dashes(a.mesh.kind)).c_str());
+            }
     }
 
     void legend() {
@@ -137,7 +142,7 @@ private:
             down += 18;
         }
         down += 10;
-        drawing_.words(at, down, "start", map_.scene.theory.empty() ? "no theory" : "boundary by theory");
+        drawing_.words(at, down, "start", map_.scene.theory.empty() ? "no theory" : "boundary by theory, each mesh");
         down += 18;
         for (const MeshKind kind : {MeshKind::aligned, MeshKind::alternating, MeshKind::unstructured}) {
             drawing_.line(at, down - 4, at + 26, down - 4, text("stroke=\"#000000\" stroke-width=\"2\" %s", dashes(kind)).c_str());

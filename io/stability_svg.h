@@ -10,8 +10,8 @@ namespace toile {
 /// "springs-explicit: swing".
 std::string map_title(const StabilityMap& map);
 
-/// A heat map: what share of the meshes works at every stiffness and value, both logarithmic, and where theory has the boundary of each kind of
-/// mesh (the geometric mean over its jitters) as a line. What a cell stands for is said where the pointer rests on it.
+/// A heat map: what share of the meshes works at every stiffness and value, both logarithmic, and where theory has the boundary of each
+/// mesh as a line. What a cell stands for is said where the pointer rests on it.
 std::string stability_svg(const StabilityMap& map);
 
 } // namespace toile

@@ -39,7 +39,8 @@ StabilityMap make_map(const StabilityScene& scene, const StabilityOptions& optio
                      spread_values(scene.low, scene.high, options.rows, scene.whole), {}};
     const int meshes = int(options.meshes.size()), rows = int(map.values.size());
     map.runs.resize(map.stiffness.size() * options.meshes.size() * map.values.size());
-    parallel_for(int(map.stiffness.size()) * meshes, 1, [&](int begin, int end) {
+    const int own = (scene.stiffness_matters ? int(map.stiffness.size()) : 1) * meshes; // columns to run
+    parallel_for(own, 1, [&](int begin, int end) {
         for (int c = begin; c < end; ++c) {
             const double stiffness = map.stiffness[c / meshes];
             const StabilityMesh& mesh = options.meshes[c % meshes];
@@ -48,6 +49,10 @@ StabilityMap make_map(const StabilityScene& scene, const StabilityOptions& optio
                 map.runs[c * rows + k] = {mesh, stiffness, map.values[k], column.boundary, std::move(column.outcomes[k])};
         }
     });
+    for (std::size_t i = std::size_t(own) * rows; i < map.runs.size(); ++i) {
+        map.runs[i] = map.runs[i % (std::size_t(own) * rows)];
+        map.runs[i].stiffness = map.stiffness[i / (std::size_t(meshes) * rows)];
+    }
     return map;
 }
 

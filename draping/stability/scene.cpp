@@ -17,7 +17,9 @@ std::vector<StabilityScene> stability_scenes() {
             swing_scene(Method::triangles),
             compressed_scene(Method::triangles),
             drawn_scene(),
-            dropped_scene()};
+            dropped_scene(),
+            plucked_scene(Method::inextensible),
+            plucked_scene(Method::nonconforming)};
 }
 
 } // namespace toile

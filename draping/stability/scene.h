@@ -40,6 +40,7 @@ struct StabilityScene {
     std::string theory;  ///< "2 / w"
     double low = 0, high = 0; ///< range of the values
     bool whole = false;       ///< values are counts
+    bool stiffness_matters = true; ///< otherwise a map has the same runs at all
     bool fails_above = true;  ///< the boundary, otherwise below
     /// `stiffness` is that of stretch times length^2 over that of the plate; values rise.
     std::function<StabilityColumn(const StabilityMesh& mesh, double stiffness, const std::vector<double>& values)> run;

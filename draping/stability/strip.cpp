@@ -15,20 +15,27 @@ constexpr double jitter = 0.2;        // of the shortest edge
 constexpr double rounding = 1e-11;    // of the largest eigenvalue
 constexpr double edge = strip_length / strip_rows;
 
-} // namespace
+SheetMesh strip_mesh(const StabilityMesh& mesh) {
+    const SheetMesh sheet = sheet_mesh(mesh.kind, strip_length, 3 * edge, edge);
+    return mesh.seed > 0 ? jittered(sheet, jitter, unsigned(mesh.seed)) : sheet;
+}
 
-SceneCloth stability_strip(const StabilityMesh& mesh, double stiffness) {
-    SheetMesh sheet = sheet_mesh(mesh.kind, strip_length, 3 * edge, edge);
-    if (mesh.seed > 0) sheet = jittered(std::move(sheet), jitter, unsigned(mesh.seed));
+SceneCloth cloth_of(const SheetMesh& sheet, double stiffness) {
     SceneCloth cloth;
     cloth.garment = sheet_garment(sheet);
     cloth.fabrics = {plain_cloth(stiffness * bend / (strip_length * strip_length), bend)};
     for (std::size_t i = 0; i < sheet.points.size(); ++i) {
         cloth.x.push_back({sheet.points[i].x(), 0, -sheet.points[i].y()});
-        if (sheet.points[i].x() < 1e-9) cloth.held.push_back(int(i));
+        if (std::abs(sheet.points[i].x()) < 1e-9) cloth.held.push_back(int(i));
     }
     return cloth;
 }
+
+} // namespace
+
+SceneCloth stability_strip(const StabilityMesh& mesh, double stiffness) { return cloth_of(strip_mesh(mesh), stiffness); }
+
+SceneCloth stability_arms(const StabilityMesh& mesh, double stiffness) { return cloth_of(with_mirror_image(strip_mesh(mesh)), stiffness); }
 
 void hold_far_end(SceneCloth& cloth) {
     for (std::size_t i = 0; i < cloth.x.size(); ++i)

@@ -20,6 +20,9 @@ inline constexpr double strip_end_mass = 2.0 / 3;
 /// `stiffness` times that over its length squared. The end at x = 0 is held.
 SceneCloth stability_strip(const StabilityMesh& mesh, double stiffness);
 
+/// The same with its mirror image on the other side of the held line, which the cloth then leaves exactly straight: two clamped arms.
+SceneCloth stability_arms(const StabilityMesh& mesh, double stiffness);
+
 /// Holds the end at x = strip_length too.
 void hold_far_end(SceneCloth& cloth);
 
@@ -34,6 +37,7 @@ double lowest_eigenvalue(NodeProblem& problem, const Points& x);
 
 // One of each kind of scene.
 StabilityScene swing_scene(Method method);      ///< a wave of stretch, of methods that move
+StabilityScene plucked_scene(Method method);    ///< a clamped strip that bends, of methods that keep lengths
 StabilityScene compressed_scene(Method method); ///< implicit steps with the exact second derivative
 StabilityScene drawn_scene();                   ///< projective
 StabilityScene dropped_scene();                 ///< xpbd

@@ -12,7 +12,7 @@ namespace toile {
 
 struct StabilityJob {
     std::vector<Method> methods; ///< empty: all
-    StabilityOptions options;    ///< but for the scenes
+    StabilityOptions options;
     std::string page;            ///< HTML file; beside it go name.csv, name.json and name-METHOD-SCENE.svg
 };
 

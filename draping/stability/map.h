@@ -10,7 +10,6 @@
 namespace toile {
 
 struct StabilityOptions {
-    std::vector<StabilityScene> scenes;
     std::vector<StabilityMesh> meshes;
     int columns = 11, rows = 13; ///< stiffnesses and values of a map
     std::function<void(const std::string& what)> progress; ///< called before every map

@@ -9,8 +9,9 @@
 using namespace toile;
 using namespace toile::test;
 
-TEST_CASE("stability: half of the amplitude is left by steps of 0.2239 of a radian") {
+TEST_CASE("stability: half of the amplitude is left by steps of 0.2262 of a radian") {
     const double z = swing_step(1, 0.5);
+    CHECK(z == Approx(0.2262).epsilon(1e-3));
     CHECK(std::pow(1 + z * z, -std::numbers::pi / z) == Approx(0.5).epsilon(1e-9));
     CHECK(swing_step(7, 0.5) == Approx(z / 7));
     CHECK(swing_step(1, 0.99) == Approx(-std::log(0.99) / std::numbers::pi).epsilon(1e-3)); // exp(-pi z) for short ones

@@ -108,7 +108,7 @@ Scene strip_on_edge() {
     s.make = [](double edge) {
         const double bend = density * g * arm * arm * arm / on_edge_gamma;
         const SheetMesh mesh = with_mirror_image(sheet_mesh(MeshKind::unstructured, arm, arm / 5, edge));
-        SceneCloth cloth = sheet(mesh, plain(1e4 * bend / (arm * arm), bend));
+        SceneCloth cloth = sheet(mesh, plain_cloth(1e4 * bend / (arm * arm), bend));
         for (std::size_t i = 0; i < mesh.points.size(); ++i) {
             const Vec2& p = mesh.points[i];
             const double along = p.x() / arm;

@@ -199,7 +199,7 @@ bool moves(const DrapeOptions& o) { return !settles(o.method) || response_of(o) 
 DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabrics& fabrics,
                   const DrapeOptions& options) {
     DrapeRun run{.staging = staging, .avatar = avatar.body, .fabrics = fabrics, .options = options};
-    run.result.residual = std::numeric_limits<double>::infinity();
+    run.result.residual = run.result.last_step = std::numeric_limits<double>::infinity();
     run.result.method = run.facts.method = options.method;
     run.facts.projected = options.method_options.projected;
     run.result.contact.response = response_of(options);

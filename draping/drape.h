@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "draping/accuracy.h"
 #include "draping/contact/friction.h"
 #include "draping/contact/response_kind.h"
 #include "draping/landmarks.h"
@@ -38,6 +39,7 @@ int frame_count(const AnimateOptions& options); ///< with the first, at time 0
 
 struct DrapeOptions {
     double tolerance = 1e-3;        ///< residual to reach; see DrapeResult::residual
+    double still = 0;               ///< m; a residual of 1 is enough when the last full step moved no node farther than this
     double clearance = 0.5e-3;      ///< m, distance from the body below which contact acts
     double friction = -1;           ///< Coulomb coefficient on the body; negative: the largest of the fabrics'
     double cloth_friction = -1;     ///< of cloth on cloth; the same
@@ -115,7 +117,8 @@ struct DrapeResult {
     /// Largest over nodes of the distance between the non-contact force and what contact can answer, over
     /// max(node's weight, a tenth of the mean node's weight).
     double residual = 0; ///< infinity when nothing was settled
-    double tolerance = 0;
+    double tolerance = 0; ///< of the residual; 1 where DrapeOptions::still ended it
+    double last_step = 0; ///< m, of the node that the last step to rest moved farthest; infinity when there was none
     FrictionCoefficients friction;
     Method method = Method::equilibrium;
     BarrierReport barrier;
@@ -125,6 +128,7 @@ struct DrapeResult {
     std::vector<LevelReport> levels;
     std::vector<StageSeconds> seconds;
     std::vector<Landmark> landmarks; ///< of every labelled edge, by label
+    std::optional<AccuracyReport> accuracy; ///< of a drape that was asked for to one
     std::vector<std::string> decisions; ///< what was modelled or left out, with the measure that justified it
     std::vector<std::string> warnings;
 };

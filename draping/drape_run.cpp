@@ -96,6 +96,7 @@ SettleResult DrapeRun::settle_some(ClothProblem& problem, Points& at, Cholesky& 
         };
     const SettleResult r = settle_cloth(problem, at, factor, o);
     result.residual = r.residual;
+    if (r.iterations > 0) result.last_step = r.motion;
     iterations_left -= r.iterations;
     result.levels.back().iterations += r.iterations;
     result.levels.back().factorisations += r.factorisations;

@@ -24,6 +24,7 @@ constexpr double least_tighter = 2.5e-4;       // drawn in by such shares of the
 constexpr double most_tighter = 2e-3;
 constexpr double inner_stitch_stiffness = 1e5; // N/m, of stitches to the inside of an edge of closed seams
 constexpr double coarse_residual = 10;         // to which levels that are not the last are settled
+constexpr double still_residual = 1;           // to which the last is where DrapeOptions::still is enough
 constexpr int untangle_every = 20;             // iterations after which cloth that did not come apart is tried again,
 constexpr int most_untangles = 5;              // in each pass
 constexpr int most_iterations = 3000;          // of the last pass of a level
@@ -232,6 +233,10 @@ void settle_level(DrapeRun& run) {
         }
         SettleOptions o;
         o.tolerance = run.last_level() && last_pass ? run.options.tolerance : coarse_residual;
+        if (run.last_level() && last_pass) {
+            o.still = run.options.still;
+            o.still_below = still_residual;
+        }
         o.max_iterations = pass.iterations;
         o.exact_below = last_pass ? 20 : 0;
         if (sheet && (pass.softness == 1 || !first))
@@ -286,6 +291,8 @@ void settle_level(DrapeRun& run) {
             run.result.status = DrapeStatus::converged;
         else
             run.result.status = DrapeStatus::stalled;
+        if (run.result.status == DrapeStatus::converged && run.options.still > 0)
+            run.result.tolerance = std::max(run.options.tolerance, still_residual);
         if (run.result.status != DrapeStatus::converged) {
             if (motion) motion->stepper->residual(motion->cloth); // tells which node is worst
             note_where(run, problem, r.end, motion ? motion->stepper->worst_node() : problem.worst_node());

@@ -134,6 +134,27 @@ Json inside_json(const InsideBody& i, const Garment& garment) {
     return json;
 }
 
+Json accuracy(const AccuracyReport& a) {
+    Json meshes = Json::array(), decisions = Json::array();
+    for (const AccuracyMesh& m : a.meshes)
+        meshes.push_back({{"edge_length", m.edge_length},
+                          {"vertices", m.vertices},
+                          {"iterations", m.iterations},
+                          {"seconds", m.seconds},
+                          {"difference", m.difference ? Json(*m.difference) : Json(nullptr)},
+                          {"motion", m.motion}});
+    for (const AccuracyDecision& d : a.decisions)
+        decisions.push_back({{"decision", d.what}, {"measure", d.measure}, {"value", d.value}, {"taken_back", d.taken_back}});
+    return {{"asked", a.asked},
+            {"estimate", a.estimate ? Json(*a.estimate) : Json(nullptr)},
+            {"discretisation", a.discretisation},
+            {"residual", a.residual},
+            {"order", a.order},
+            {"met", a.met},
+            {"meshes", meshes},
+            {"decisions", decisions}};
+}
+
 Json motion(const MotionReport& m) {
     return {{"duration", (m.frames - 1) / m.rate},
             {"fps", m.rate},
@@ -259,6 +280,7 @@ nlohmann::ordered_json make_report(const DrapeResult& r, const TriMesh& body, co
     if (Json curves = curves_json(fabrics); !curves.empty()) report["stretch_curves"] = std::move(curves);
     if (!context.frames.empty()) report["frames"] = frames(context.frames);
     if (r.motion) report["motion"] = motion(*r.motion);
+    if (r.accuracy) report["accuracy"] = accuracy(*r.accuracy);
     return report;
 }
 

@@ -20,6 +20,7 @@ namespace {
 
 struct DrapeArguments {
     DrapeJob job;
+    bool edge_chosen = false;
     bool rate_chosen = false, air_chosen = false;
     bool sweeps_chosen = false, hessian_chosen = false, damping_chosen = false;
     int threads = 0;
@@ -74,6 +75,21 @@ void refuse_useless_frames(const DrapeArguments& a) {
         throw CommandLineError("--fps makes point caches beside the .obj files of an --avatar-sequence: name one with -o");
 }
 
+/// The same of what a drape to an accuracy chooses itself.
+void refuse_useless_accuracy(const DrapeArguments& a) {
+    if (a.job.accuracy == 0) return;
+    const auto refuse = [](const std::string& what) {
+        throw CommandLineError("--accuracy " + what + "; leave one of them out");
+    };
+    if (a.edge_chosen) refuse("chooses edge lengths, and --edge-length names one");
+    if (!a.job.from.empty()) refuse("starts from the pattern's own placement, and --from elsewhere");
+    if (a.job.drape.method != Method::equilibrium) refuse("drapes by equilibrium, and --method names another");
+    if (a.job.drape.contact.value_or(ContactResponse::barrier) != ContactResponse::barrier)
+        refuse("has the contact barrier, and --contact names another");
+    if (is_animated(a.job.drape)) refuse("is about cloth at rest, and --animate about its motion");
+    if (!a.job.avatar_sequence.empty()) refuse("drapes on a body at rest, and --avatar-sequence is one in motion");
+}
+
 void refuse_useless(const DrapeArguments& a) {
     if (a.job.garments.empty() && a.job.report.empty() && a.job.preview.empty() && !a.json)
         throw CommandLineError("there is nothing to write: name a file with -o, --report or --preview");
@@ -82,6 +98,7 @@ void refuse_useless(const DrapeArguments& a) {
     if (a.job.repair_avatar && a.job.avatar.empty() && a.job.avatar_sequence.empty())
         throw CommandLineError("--repair-avatar needs --avatar; the built-in form is closed");
     refuse_useless_method(a);
+    refuse_useless_accuracy(a);
     refuse_formats(a.job.garments);
     refuse_useless_frames(a);
 }
@@ -109,6 +126,13 @@ void summarise_motion(std::ostream& out, const MotionReport& m) {
                 m.frames, m.rate, m.steps_per_frame, 1e3 * m.time_step, m.speed);
 }
 
+void summarise_accuracy(std::ostream& out, const AccuracyReport& a) {
+    out << "accuracy: " << (a.estimate ? "about " + show_length(*a.estimate) : "unknown") << " of " << show_length(a.asked)
+        << (a.met ? "" : ", not met") << ", meshes of";
+    for (const AccuracyMesh& m : a.meshes) out << text(" %.3g", 1e3 * m.edge_length);
+    out << " mm\n";
+}
+
 /// The report in five lines, and one on the frames of a sequence or of a motion.
 void summarise(std::ostream& out, const DrapeOutcome& outcome) {
     const auto r = nlohmann::json::parse(outcome.report);
@@ -124,6 +148,7 @@ void summarise(std::ostream& out, const DrapeOutcome& outcome) {
     out << "stretch: warp to " << percent(strain["warp"]["max"]) << " of " << percent(strain["warp"]["limit"])
         << ", weft to " << percent(strain["weft"]["max"]) << " of " << percent(strain["weft"]["limit"])
         << "; compressed " << percent(strain["compressed_area"]) << " of the area\n";
+    if (outcome.result.accuracy) summarise_accuracy(out, *outcome.result.accuracy);
     if (!outcome.frames.empty()) summarise_frames(out, outcome.frames);
     if (outcome.result.motion) summarise_motion(out, *outcome.result.motion);
     constexpr std::size_t most_names = 12; // of a sequence, the first and the last tell the others
@@ -179,6 +204,21 @@ std::string joined_by_bars(const std::vector<std::string>& names) {
     std::string text;
     for (const std::string& name : names) text += (text.empty() ? "" : "|") + name;
     return text;
+}
+
+/// --accuracy, which is without a default.
+void add_accuracy(CLI::App& command, DrapeJob& job) {
+    constexpr double least = 1e-4, most = 0.05; // m: below it rounding of contact would count, above it any mesh does
+    command
+        .add_option_function<std::string>(
+            "--accuracy",
+            [&job](const std::string& word) {
+                job.accuracy = parse_length(word);
+                if (job.accuracy < least || job.accuracy > most)
+                    throw CLI::ValidationError("--accuracy", word + " is outside " + show_length(least) + " to " + show_length(most));
+            },
+            "Error that the drape may have: meshes are chosen for it during the run, by docs/accuracy.md")
+        ->type_name("LENGTH");
 }
 
 /// --method and what only some methods have.
@@ -276,6 +316,7 @@ void add_drape(CLI::App& app, Command& chosen) {
     add_form_measures(command, job.form);
     add_fabric(command, job.fabric, "Fabric of panels that name none");
     add_length(command, "edge-length", job.edge_length, 0.001, 0.2, "Mean edge of the mesh");
+    add_accuracy(command, job);
     command.add_option("-o,--output", job.garments, "Garment file to write, .obj or .glb; may be repeated")
         ->expected(1)
         ->take_all()
@@ -320,7 +361,10 @@ void add_drape(CLI::App& app, Command& chosen) {
     add_unit_and_up(command, job.write);
     add_run_options(command, a->threads, a->quiet, a->json);
     command.callback(
-        [a, &chosen] { chosen = [a](const Console& console) { return drape_command(*a, console); }; });
+        [a, &chosen, &command] {
+            a->edge_chosen = command.count("--edge-length") > 0;
+            chosen = [a](const Console& console) { return drape_command(*a, console); };
+        });
 }
 
 } // namespace toile

@@ -9,6 +9,7 @@
 #include "patterns/curve.h"
 #include "src/quantity.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
@@ -19,11 +20,15 @@ constexpr double max_triangles = 2e6;
 
 constexpr double bytes_per_triangle = 400; // for all levels while they are made; 310 were seen
 
-void refuse_too_fine(const Pattern& pattern, double edge_length, double max_memory) {
+double area_of(const Pattern& pattern) {
     double area = 0;
     for (const Panel& panel : pattern.panels)
         area += std::abs(signed_area(panel.outline));
-    double triangles = area / (std::sqrt(3.0) / 4 * edge_length * edge_length);
+    return area;
+}
+
+void refuse_too_fine(const Pattern& pattern, double edge_length, double max_memory) {
+    double triangles = area_of(pattern) / (std::sqrt(3.0) / 4 * edge_length * edge_length);
     for (const Panel& panel : pattern.panels)
         if (panel.rest) triangles += double(panel.rest->mesh.triangles.size());
     if (triangles > max_triangles)
@@ -113,6 +118,11 @@ const Panel* moulded_panel(const Pattern& pattern) {
     for (const Panel& panel : pattern.panels)
         if (panel.rest) return &panel;
     return nullptr;
+}
+
+double finest_edge(const Pattern& pattern, double max_memory) {
+    const double room = (max_memory - memory_use().now) / bytes_per_triangle;
+    return std::sqrt(area_of(pattern) / (std::sqrt(3.0) / 4 * std::clamp(room, 1.0, max_triangles)));
 }
 
 FlatPattern flat_of(const Pattern& pattern, double edge_length, bool grain_lattice) {

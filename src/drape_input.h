@@ -35,6 +35,9 @@ const Panel* moulded_panel(const Pattern& pattern);
 DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double edge_length, double max_memory = 1e18,
                     bool grain_lattice = false);
 
+/// The edge length, m, below which input_of() would refuse a pattern of flat panels.
+double finest_edge(const Pattern& pattern, double max_memory = 1e18);
+
 /// The same pattern's meshes alone.
 FlatPattern flat_of(const Pattern& pattern, double edge_length, bool grain_lattice = false);
 

@@ -11,6 +11,7 @@
 #include "io/read_sequence.h"
 #include "io/start_from.h"
 #include "io/write_file.h"
+#include "draping/drape_to_accuracy.h"
 #include "draping/hooks.h"
 #include "sewing/blas.h"
 #include "src/drape_input.h"
@@ -108,6 +109,7 @@ std::string input_hash(const DrapeJob& job, const std::vector<std::string>& file
          {double(how.limits.sweeps), how.time_step, how.damping_time, how.beyond, job.form.height, job.form.bust, job.form.waist, job.form.hip, job.edge_length, job.drape.tolerance,
           job.drape.clearance, job.drape.friction, job.drape.cloth_friction, job.drape.gravity})
         hash.add(std::to_string(value) + ' ');
+    if (job.accuracy > 0) hash.add(std::to_string(job.accuracy) + " accuracy ");
     if (const AnimateOptions& a = job.drape.animation; is_animated(job.drape))
         for (const double value : {a.duration, a.rate, a.air_damping}) hash.add(std::to_string(value) + " animation ");
     return hash.text();
@@ -172,6 +174,25 @@ void refuse_too_many_frames(const DrapeJob& job, const Garment& garment) {
     if (writes_floats(job) && bytes > most_animation)
         throw InputError(motion + " makes a GLB of about " + show_size(bytes) + ", more than the " +
                          show_size(most_animation) + " that are written" + advice);
+}
+
+constexpr double coarse_edge = 0.04; // m, at which a drape to an accuracy is checked before it begins
+
+/// A drape to an accuracy chooses its meshes.
+void refuse_meshes_of_their_own(const DrapeJob& job, const Pattern& pattern) {
+    if (is_staged(job.pattern))
+        throw InputError(job.pattern + " is a mesh already; --accuracy chooses meshes, for which it needs a pattern");
+    if (const Panel* panel = moulded_panel(pattern))
+        throw InputError("panel " + panel->name + " keeps the triangles of " + panel->rest->file +
+                         "; --accuracy chooses meshes, for which it needs panels that are flat at rest");
+}
+
+AccuracyOptions accuracy_options(const DrapeJob& job, const Pattern& pattern) {
+    AccuracyOptions o;
+    o.asked = job.accuracy;
+    o.finest = std::max(o.finest, finest_edge(pattern, job.drape.max_memory));
+    o.mesh = [&pattern](double edge_length) { return stage(pattern, flat_of(pattern, edge_length)); };
+    return o;
 }
 
 /// The body of a job, and its further frames.
@@ -305,9 +326,10 @@ DrapeOutcome run_job(const DrapeJob& job) {
     const Avatar avatar{body, std::move(core)};
     watch.lap(context, "read");
 
+    if (job.accuracy > 0) refuse_meshes_of_their_own(job, pattern);
     const DrapeInput input = is_staged(job.pattern)
                                  ? read_staged_input(job.pattern, job.fabric, body)
-                                 : input_of(pattern, job.fabric, job.edge_length, job.drape.max_memory,
+                                 : input_of(pattern, job.fabric, job.accuracy > 0 ? coarse_edge : job.edge_length, job.drape.max_memory,
                                             needs_grain_lattice(job.drape.method));
     if (const Panel* panel = moulded_panel(pattern)) note_moulded(job, *panel, context.warnings);
     context.input_hash = input_hash(job, input.files);
@@ -321,7 +343,8 @@ DrapeOutcome run_job(const DrapeJob& job) {
     options.max_seconds -= watch.total();
     options.from = earlier_positions(job.from, input.staging, context.decisions);
     options.progress = part_of_job(job, 0, 1 / double(1 + sequence.frames.size()));
-    outcome.result = drape(input.staging, avatar, input.fabrics, options);
+    outcome.result = job.accuracy > 0 ? drape_to_accuracy(accuracy_options(job, pattern), avatar, input.fabrics, options)
+                                      : drape(input.staging, avatar, input.fabrics, options);
     if (job.interrupted && job.interrupted())
         outcome.result.where = "stopped by a signal before it had converged";
     watch.skip();

@@ -21,6 +21,7 @@ struct DrapeJob {
     bool repair_avatar = false;
     std::string fabric;        ///< preset or file; empty: what the pattern says, else poplin
     double edge_length = 0.01; ///< m, mean edge of the finest mesh; a staged mesh keeps its own
+    double accuracy = 0;       ///< m, RMS; not 0: edge lengths are chosen for it, and edge_length is not used
     std::string from;          ///< garment file to start from; empty: the pattern's own placement
     DrapeOptions drape;
     std::function<bool()> interrupted; ///< whether drape.progress stopped the work; for the report's `where`

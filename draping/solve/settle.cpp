@@ -203,7 +203,7 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
             result.end = SettleEnd::stopped;
             return result;
         }
-        if (result.residual <= options.tolerance || still) {
+        if (result.residual <= options.tolerance || (still && result.residual <= options.still_below)) {
             result.end = SettleEnd::settled;
             return result;
         }
@@ -305,7 +305,8 @@ SettleResult settle(Problem& problem, Points& x, Cholesky& factor, const SettleO
             }
         } else {
             failures = 0;
-            still = options.still > 0 && t == 1 && longest(dx) < options.still && h > 1;
+            result.motion = longest(last);
+            still = options.still > 0 && t == 1 && result.motion < options.still && h > 1;
             problem.arrive(x);
             if (options.relax_part && h > static_time_step && ++whole_steps % relax_every == 0 &&
                 options.relax_part(x, last, result.residual))

@@ -8,6 +8,7 @@
 #include "draping/solve/problem.h"
 
 #include <functional>
+#include <limits>
 
 namespace toile {
 
@@ -18,6 +19,7 @@ struct SettleOptions {
     double max_step = 0.01;       ///< m, no point moves farther in one iteration
     double exact_below = 20;      ///< residual below which the exact Hessian is used
     double still = 0;             ///< m, also settled when a full step moves no point farther than this
+    double still_below = std::numeric_limits<double>::infinity(); ///< and leads to a residual of at most this
     /// Called now and then with the state that a Newton step has led to, the step, and the residual before it: may bring x
     /// nearer to rest where most of the motion is. Returns whether it moved x.
     std::function<bool(Points& x, const Eigen::VectorXd& step, double residual)> relax_part;
@@ -31,6 +33,7 @@ struct SettleResult {
     SettleEnd end = SettleEnd::iterations;
     double residual = 0;
     double energy = 0;
+    double motion = std::numeric_limits<double>::infinity(); ///< m, of the point that the last step moved farthest; infinity: no step
     int iterations = 0;
     int factorisations = 0;
     int conjugate_gradients = 0;

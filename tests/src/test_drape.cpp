@@ -229,3 +229,45 @@ TEST_CASE("options that a method would ignore are refused", "[methods]") {
         CHECK(one_sentence(r.err));
     }
 }
+
+TEST_CASE("a drape to an accuracy says what it decided and is as near as it says") {
+    const TempFolder folder;
+    const std::string skirt = write_text(folder / "skirt.json", skirt_pattern());
+    const Run r = run_toile({"drape", skirt, "--fabric", "jersey", "--accuracy", "5mm", "-o", folder / "a.obj", "--report",
+                             folder / "a.json", "--hold", "waist"});
+    INFO(r.err);
+    CHECK_THAT(r.out, Contains("accuracy: about"));
+    const nlohmann::json report = load_json(folder / "a.json"), a = report["accuracy"];
+    CHECK(Schema("report.schema.json").complaints(report.dump()) == "");
+    CHECK(a["asked"] == 0.005);
+    CHECK(a["met"] == (a["estimate"] <= a["asked"]));
+    REQUIRE(a["meshes"].size() >= 2);
+    CHECK(a["meshes"][0]["difference"].is_null());
+    CHECK(a["meshes"][1]["difference"] > 0);
+    CHECK(a["residual"] <= 0.0005);
+    for (const auto& d : a["decisions"]) CHECK(d["measure"] != "");
+
+    const double edge = a["meshes"].back()["edge_length"];
+    const std::string half = std::to_string(500 * edge) + "mm";
+    REQUIRE(run_toile({"drape", skirt, "--fabric", "jersey", "--hold", "waist", "--edge-length", half, "--from", folder / "a.obj", "-o",
+                       folder / "b.obj"}).code == r.code);
+    const Run compared = run_toile({"compare", folder / "a.obj", folder / "b.obj", "--json"});
+    CHECK(nlohmann::json::parse(compared.out)["rms"] < 2 * a["estimate"].get<double>());
+}
+
+TEST_CASE("what a drape to an accuracy chooses cannot be asked for as well") {
+    const auto refusal = [](std::vector<std::string> more) {
+        more.insert(more.begin(), {"drape", tee, "--accuracy", "2mm", "--report", "never.json"});
+        const Run r = run_toile(more);
+        CHECK(r.code != 0);
+        CHECK(one_sentence(r.err));
+        return r.err;
+    };
+    CHECK_THAT(refusal({"--edge-length", "20mm"}), Contains("--edge-length"));
+    CHECK_THAT(refusal({"--method", "triangles"}), Contains("--method"));
+    CHECK_THAT(refusal({"--contact", "penalty"}), Contains("--contact"));
+    CHECK_THAT(refusal({"--animate", "1s", "-o", "never.obj"}), Contains("--animate"));
+    CHECK_THAT(refusal({"--from", "never.obj"}), Contains("--from"));
+    const Run r = run_toile({"drape", tee, "--accuracy", "1s", "--report", "never.json"});
+    CHECK_THAT(r.err, Contains("--accuracy"));
+}

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/drape_to_accuracy.h"
+
+#include "draping/carry_drape.h"
+#include "draping/compare.h"
+#include "geometry/text.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace toile {
+
+namespace {
+
+constexpr double first_edge = 0.04;        // m: the coarsest level of a drape
+constexpr double usual_edge = 0.02;        // m, at which real garments were 1 to 3 mm from their drape at half of it,
+constexpr double usual_error = 2e-3;       // by docs/accuracy.md
+constexpr double least_finer = 0.71;       // of the edge length: smaller steps tell too little for their time
+constexpr double most_finer = 0.5;
+constexpr double aim = 0.7;                // of what is asked: estimates are off by about as much
+constexpr double share_of_residual = 0.1;  // of the discretisation error, that iterations may leave
+
+/// What the loop over meshes has come to.
+struct AccuracyRun {
+    using Clock = std::chrono::steady_clock;
+    const AccuracyOptions& accuracy;
+    const Avatar& avatar;
+    const PanelFabrics& fabrics;
+    const DrapeOptions& options;
+    Clock::time_point started = Clock::now();
+    DrapeResult result = {};
+    AccuracyReport report = {};
+
+    double seconds() const { return std::chrono::duration<double>(Clock::now() - started).count(); }
+    void decide(std::string what, std::string measure, double value) {
+        report.decisions.push_back({std::move(what), std::move(measure), value, false});
+    }
+    int meshes() const { return int(report.meshes.size()); }
+    const AccuracyMesh& mesh(int from_last) const { return report.meshes[report.meshes.size() - 1 - from_last]; }
+};
+
+TriMesh surface(const DrapeResult& r) { return {r.state.positions, node_triangles(r.garment)}; }
+
+/// Work on k meshes done fills half of what is left, whatever comes after.
+std::function<bool(const DrapeProgress&)> part_of_meshes(const AccuracyRun& run) {
+    if (!run.options.progress) return {};
+    return [tell = run.options.progress, left = std::pow(0.5, run.meshes())](DrapeProgress p) {
+        p.done = 1 - left + left / 2 * p.done;
+        p.seconds_left = std::numeric_limits<double>::infinity();
+        return tell(p);
+    };
+}
+
+DrapeResult joined(DrapeResult before, DrapeResult now) {
+    now.levels.insert(now.levels.begin(), before.levels.begin(), before.levels.end());
+    now.seconds.insert(now.seconds.begin(), before.seconds.begin(), before.seconds.end());
+    now.contact.seconds += before.contact.seconds;
+    return now;
+}
+
+Points carried(const AccuracyRun& run, const Staging& staging) {
+    std::vector<int> same(run.result.garment.panel_names.size());
+    std::iota(same.begin(), same.end(), 0);
+    return carry_drape(run.result.garment, run.result.state.positions, close_seams(staging.levels.back().garment), same);
+}
+
+/// Drapes at this edge length from where the mesh before came to rest.
+void drape_mesh(AccuracyRun& run, double edge_length) {
+    const auto start = AccuracyRun::Clock::now();
+    const Staging staging = run.accuracy.mesh(edge_length);
+    DrapeOptions o = run.options;
+    o.still = share_of_residual * run.accuracy.asked;
+    o.progress = part_of_meshes(run);
+    o.max_seconds -= run.seconds();
+    if (run.meshes() > 0) o.from = carried(run, staging);
+    DrapeResult now = drape(staging, run.avatar, run.fabrics, o);
+    AccuracyMesh mesh;
+    mesh.edge_length = edge_length;
+    mesh.vertices = int(now.garment.uv.size());
+    mesh.motion = std::isfinite(now.last_step) ? now.last_step : 0; // at rest from the start
+    for (const LevelReport& level : now.levels) mesh.iterations += level.iterations;
+    mesh.seconds = std::chrono::duration<double>(AccuracyRun::Clock::now() - start).count();
+    if (run.meshes() > 0) mesh.difference = compare(surface(run.result), surface(now)).rms;
+    run.result = run.meshes() > 0 ? joined(std::move(run.result), std::move(now)) : std::move(now);
+    run.report.meshes.push_back(mesh);
+}
+
+/// From the differences of the last meshes.
+void estimate(AccuracyRun& run) {
+    AccuracyReport& r = run.report;
+    const AccuracyMesh &now = run.mesh(0), &before = run.mesh(1);
+    const double ratio = before.edge_length / now.edge_length;
+    r.order = assumed_order;
+    if (run.meshes() > 2 && *now.difference > 0 && *before.difference > 0)
+        r.order = measured_order(*before.difference, *now.difference, run.mesh(2).edge_length, before.edge_length, now.edge_length);
+    r.discretisation = expected_change(*now.difference, ratio, r.order);
+    r.residual = now.motion;
+    r.estimate = r.discretisation + r.residual;
+}
+
+/// The edge length at which the estimate would be a little below what is asked, if errors fall by the order found.
+double next_edge(const AccuracyRun& run) {
+    const AccuracyReport& r = run.report;
+    const double edge = run.mesh(0).edge_length, wanted = aim * run.accuracy.asked / r.discretisation;
+    const double share = r.order > 0 ? std::pow(wanted, 1 / r.order) : most_finer;
+    return std::max(edge * std::clamp(share, most_finer, least_finer), run.accuracy.finest);
+}
+
+/// Of the second mesh, before anything is known of this garment's errors.
+double second_edge(const AccuracyRun& run) {
+    const double usual = usual_edge * std::pow(run.accuracy.asked / usual_error, 1 / assumed_order);
+    return std::max(std::clamp(usual, most_finer * first_edge, least_finer * first_edge), run.accuracy.finest);
+}
+
+/// Whether another mesh is to follow, and of what edge length.
+std::optional<double> choose_next(AccuracyRun& run) {
+    AccuracyReport& r = run.report;
+    if (run.result.status != DrapeStatus::converged) return std::nullopt;
+    if (run.meshes() == 1) {
+        const double edge = second_edge(run);
+        run.decide(text("a second mesh of %.3g mm, whose difference from the first tells the error", 1e3 * edge), "RMS asked, m",
+                   run.accuracy.asked);
+        return edge;
+    }
+    estimate(run);
+    r.met = *r.estimate <= run.accuracy.asked;
+    const std::string by = text("estimate of the error at %.3g mm, m", 1e3 * run.mesh(0).edge_length);
+    if (r.met) {
+        run.decide("the last mesh is fine enough", by, *r.estimate);
+        return std::nullopt;
+    }
+    if (run.mesh(0).edge_length <= run.accuracy.finest * (1 + 1e-9)) {
+        run.decide(text("no mesh is finer than %.3g mm, and the error stays larger than asked", 1e3 * run.accuracy.finest), by, *r.estimate);
+        return std::nullopt;
+    }
+    const double edge = next_edge(run);
+    r.decisions.back().taken_back = true; // the edge length chosen last was not fine enough
+    run.decide(text("a finer mesh of %.3g mm", 1e3 * edge), by, *r.estimate);
+    return edge;
+}
+
+} // namespace
+
+DrapeResult drape_to_accuracy(const AccuracyOptions& accuracy, const Avatar& avatar, const PanelFabrics& fabrics,
+                              const DrapeOptions& options) {
+    AccuracyRun run{.accuracy = accuracy, .avatar = avatar, .fabrics = fabrics, .options = options};
+    run.report.asked = accuracy.asked;
+    run.decide("iterations on a mesh end when the last moved no node farther than a tenth of what is asked, at a residual of 1",
+               "a tenth of what is asked, m", share_of_residual * accuracy.asked);
+    drape_mesh(run, std::max(first_edge, accuracy.finest));
+    while (const std::optional<double> edge = choose_next(run)) drape_mesh(run, *edge);
+    run.result.accuracy = std::move(run.report);
+    return std::move(run.result);
+}
+
+} // namespace toile

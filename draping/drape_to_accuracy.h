@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+// A drape that chooses its own meshes until its error is as small as asked.
+
+#include "draping/drape.h"
+
+namespace toile {
+
+struct AccuracyOptions {
+    double asked = 2e-3;   ///< m, RMS distance from the drape at half the edge length
+    double finest = 2e-3;  ///< m, no mesh is finer
+    /// The pattern at an edge length, m, at nested levels.
+    std::function<Staging(double edge_length)> mesh;
+};
+
+/// Drapes at a coarse edge length, and on at finer ones, each from where the mesh before came to rest, until the estimate of
+/// the error is at most `asked`, no finer mesh is allowed, or the limits of `options` end it. The estimate is what two
+/// meshes differ by, carried on by the order that three show or that is assumed (draping/accuracy.h), and what the last
+/// iteration moved: iterations end when that is below a tenth of what is asked. Result: that of the last mesh with DrapeResult::accuracy; levels and seconds are those of all. A mesh that does
+/// not come to rest ends it with its own status.
+DrapeResult drape_to_accuracy(const AccuracyOptions& accuracy, const Avatar& avatar, const PanelFabrics& fabrics,
+                              const DrapeOptions& options);
+
+} // namespace toile

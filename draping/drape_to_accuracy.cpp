@@ -3,6 +3,7 @@
 
 #include "draping/carry_drape.h"
 #include "draping/compare.h"
+#include "draping/grade.h"
 #include "geometry/text.h"
 
 #include <algorithm>
@@ -20,6 +21,8 @@ constexpr double usual_edge = 0.02;        // m, at which real garments were 1 t
 constexpr double usual_error = 2e-3;       // by docs/accuracy.md
 constexpr double least_finer = 0.71;       // of the edge length: smaller steps tell too little for their time
 constexpr double most_finer = 0.5;
+constexpr double most_graded = 2;          // times the edge length, where cloth is flat
+constexpr double curved_most = 0.3;        // of the area: with a tenth, errors grew more than vertices went
 constexpr double aim = 0.7;                // of what is asked: estimates are off by about as much
 constexpr double share_of_residual = 0.1;  // of the discretisation error, that iterations may leave
 
@@ -33,6 +36,7 @@ struct AccuracyRun {
     Clock::time_point started = Clock::now();
     DrapeResult result = {};
     AccuracyReport report = {};
+    std::size_t edge_decision = 0; ///< the last about an edge length
 
     double seconds() const { return std::chrono::duration<double>(Clock::now() - started).count(); }
     void decide(std::string what, std::string measure, double value) {
@@ -67,12 +71,33 @@ Points carried(const AccuracyRun& run, const Staging& staging) {
     return carry_drape(run.result.garment, run.result.state.positions, close_seams(staging.levels.back().garment), same);
 }
 
+/// As fine as `edge_length` where the mesh before shows that the cloth is curved.
+Staging mesh_for(const AccuracyRun& run, double edge_length) {
+    if (run.meshes() == 0 || !run.accuracy.graded) return run.accuracy.mesh(edge_length, {});
+    GradeOptions o;
+    o.edge_length = edge_length;
+    o.most = most_graded * edge_length;
+    o.curved = curved_most;
+    const Garment& g = run.result.garment;
+    const PlaceFactor edge = over_panels(g, graded_edges(g, run.result.state.positions, o));
+    return run.accuracy.mesh(o.most, [&](int panel, const Vec2& at) { return edge(panel, at) / o.most; });
+}
+
+void decide_graded(AccuracyRun& run, double edge_length, int vertices) {
+    double area = 0;
+    for (const Mat2& edges : run.result.garment.rest.edges) area += rest_area(edges);
+    const double uniform = area / (std::sqrt(3.0) / 2 * edge_length * edge_length);
+    run.decide(text("edges of %.3g mm on the %.0f %% of the cloth that is curved most, and up to %.3g mm elsewhere", 1e3 * edge_length,
+                    100 * curved_most, 1e3 * most_graded * edge_length),
+               "vertices over those of equal triangles everywhere", vertices / uniform);
+}
+
 /// Drapes at this edge length from where the mesh before came to rest.
 void drape_mesh(AccuracyRun& run, double edge_length) {
     const auto start = AccuracyRun::Clock::now();
-    const Staging staging = run.accuracy.mesh(edge_length);
+    const Staging staging = mesh_for(run, edge_length);
     DrapeOptions o = run.options;
-    o.still = share_of_residual * run.accuracy.asked;
+    if (run.accuracy.ends_early) o.still = share_of_residual * run.accuracy.asked;
     o.progress = part_of_meshes(run);
     o.max_seconds -= run.seconds();
     if (run.meshes() > 0) o.from = carried(run, staging);
@@ -83,6 +108,7 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
     mesh.motion = std::isfinite(now.last_step) ? now.last_step : 0; // at rest from the start
     for (const LevelReport& level : now.levels) mesh.iterations += level.iterations;
     mesh.seconds = std::chrono::duration<double>(AccuracyRun::Clock::now() - start).count();
+    if (run.meshes() > 0 && run.accuracy.graded) decide_graded(run, edge_length, mesh.vertices);
     if (run.meshes() > 0) mesh.difference = compare(surface(run.result), surface(now)).rms;
     run.result = run.meshes() > 0 ? joined(std::move(run.result), std::move(now)) : std::move(now);
     run.report.meshes.push_back(mesh);
@@ -123,6 +149,7 @@ std::optional<double> choose_next(AccuracyRun& run) {
         const double edge = second_edge(run);
         run.decide(text("a second mesh of %.3g mm, whose difference from the first tells the error", 1e3 * edge), "RMS asked, m",
                    run.accuracy.asked);
+        run.edge_decision = r.decisions.size() - 1;
         return edge;
     }
     estimate(run);
@@ -137,8 +164,9 @@ std::optional<double> choose_next(AccuracyRun& run) {
         return std::nullopt;
     }
     const double edge = next_edge(run);
-    r.decisions.back().taken_back = true; // the edge length chosen last was not fine enough
+    r.decisions[run.edge_decision].taken_back = true; // it was not fine enough
     run.decide(text("a finer mesh of %.3g mm", 1e3 * edge), by, *r.estimate);
+    run.edge_decision = r.decisions.size() - 1;
     return edge;
 }
 
@@ -148,8 +176,9 @@ DrapeResult drape_to_accuracy(const AccuracyOptions& accuracy, const Avatar& ava
                               const DrapeOptions& options) {
     AccuracyRun run{.accuracy = accuracy, .avatar = avatar, .fabrics = fabrics, .options = options};
     run.report.asked = accuracy.asked;
-    run.decide("iterations on a mesh end when the last moved no node farther than a tenth of what is asked, at a residual of 1",
-               "a tenth of what is asked, m", share_of_residual * accuracy.asked);
+    if (accuracy.ends_early)
+        run.decide("iterations on a mesh end when the last moved no node farther than a tenth of what is asked, at a residual of 1",
+                   "a tenth of what is asked, m", share_of_residual * accuracy.asked);
     drape_mesh(run, std::max(first_edge, accuracy.finest));
     while (const std::optional<double> edge = choose_next(run)) drape_mesh(run, *edge);
     run.result.accuracy = std::move(run.report);

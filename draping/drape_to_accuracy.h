@@ -7,11 +7,15 @@
 
 namespace toile {
 
+using PlaceFactor = std::function<double(int panel, const Vec2& at)>;
+
 struct AccuracyOptions {
     double asked = 2e-3;   ///< m, RMS distance from the drape at half the edge length
     double finest = 2e-3;  ///< m, no mesh is finer
-    /// The pattern at an edge length, m, at nested levels.
-    std::function<Staging(double edge_length)> mesh;
+    bool ends_early = true; ///< iterations end when they move the cloth by little of what is asked
+    bool graded = true;    ///< meshes are as fine as their edge length where the cloth is curved, and coarser elsewhere
+    /// The pattern at an edge length, m, and a factor in (0, 1] on it by place (empty: 1), at nested levels.
+    std::function<Staging(double edge_length, const PlaceFactor& size)> mesh;
 };
 
 /// Drapes at a coarse edge length, and on at finer ones, each from where the mesh before came to rest, until the estimate of

@@ -125,11 +125,13 @@ double finest_edge(const Pattern& pattern, double max_memory) {
     return std::sqrt(area_of(pattern) / (std::sqrt(3.0) / 4 * std::clamp(room, 1.0, max_triangles)));
 }
 
-FlatPattern flat_of(const Pattern& pattern, double edge_length, bool grain_lattice) {
+FlatPattern flat_of(const Pattern& pattern, double edge_length, bool grain_lattice,
+                    const std::function<double(int panel, const Vec2& at)>& size) {
     TriangulateOptions options;
     options.edge_length = edge_length;
     options.levels = levels_for(edge_length);
     options.grain_lattice = grain_lattice;
+    options.size = size;
     return triangulate(pattern, options);
 }
 

@@ -38,8 +38,9 @@ DrapeInput input_of(const Pattern& pattern, const std::string& fabric, double ed
 /// The edge length, m, below which input_of() would refuse a pattern of flat panels.
 double finest_edge(const Pattern& pattern, double max_memory = 1e18);
 
-/// The same pattern's meshes alone.
-FlatPattern flat_of(const Pattern& pattern, double edge_length, bool grain_lattice = false);
+/// The same pattern's meshes alone; `size` as in TriangulateOptions.
+FlatPattern flat_of(const Pattern& pattern, double edge_length, bool grain_lattice = false,
+                    const std::function<double(int panel, const Vec2& at)>& size = {});
 
 /// A staged mesh and its companion, which may say fabrics, layers, pins and elastics; the edges of its panels are
 /// the loops of their border. Throws InputError.

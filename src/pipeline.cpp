@@ -191,7 +191,9 @@ AccuracyOptions accuracy_options(const DrapeJob& job, const Pattern& pattern) {
     AccuracyOptions o;
     o.asked = job.accuracy;
     o.finest = std::max(o.finest, finest_edge(pattern, job.drape.max_memory));
-    o.mesh = [&pattern](double edge_length) { return stage(pattern, flat_of(pattern, edge_length)); };
+    o.mesh = [&pattern](double edge_length, const PlaceFactor& size) {
+        return stage(pattern, flat_of(pattern, edge_length, false, size));
+    };
     return o;
 }
 

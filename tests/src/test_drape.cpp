@@ -232,27 +232,26 @@ TEST_CASE("options that a method would ignore are refused", "[methods]") {
 
 TEST_CASE("a drape to an accuracy says what it decided and is as near as it says") {
     const TempFolder folder;
-    const std::string skirt = write_text(folder / "skirt.json", skirt_pattern());
-    const Run r = run_toile({"drape", skirt, "--fabric", "jersey", "--accuracy", "5mm", "-o", folder / "a.obj", "--report",
-                             folder / "a.json", "--hold", "waist"});
+    const Run r = run_toile({"drape", tee, "--accuracy", "5mm", "-o", folder / "a.obj", "--report", folder / "a.json"});
     INFO(r.err);
+    REQUIRE(r.code == 0);
     CHECK_THAT(r.out, Contains("accuracy: about"));
     const nlohmann::json report = load_json(folder / "a.json"), a = report["accuracy"];
     CHECK(Schema("report.schema.json").complaints(report.dump()) == "");
     CHECK(a["asked"] == 0.005);
-    CHECK(a["met"] == (a["estimate"] <= a["asked"]));
+    CHECK(a["met"] == true);
+    CHECK(a["estimate"].get<double>() <= 0.005);
     REQUIRE(a["meshes"].size() >= 2);
     CHECK(a["meshes"][0]["difference"].is_null());
-    CHECK(a["meshes"][1]["difference"] > 0);
-    CHECK(a["residual"] <= 0.0005);
-    for (const auto& d : a["decisions"]) CHECK(d["measure"] != "");
+    CHECK(a["meshes"][1]["difference"].get<double>() > 0);
+    CHECK(a["residual"].get<double>() <= 0.0005);
+    CHECK(a["decisions"].size() >= 4);
 
     const double edge = a["meshes"].back()["edge_length"];
     const std::string half = std::to_string(500 * edge) + "mm";
-    REQUIRE(run_toile({"drape", skirt, "--fabric", "jersey", "--hold", "waist", "--edge-length", half, "--from", folder / "a.obj", "-o",
-                       folder / "b.obj"}).code == r.code);
+    REQUIRE(run_toile({"drape", tee, "--edge-length", half, "--from", folder / "a.obj", "-o", folder / "b.obj"}).code == 0);
     const Run compared = run_toile({"compare", folder / "a.obj", folder / "b.obj", "--json"});
-    CHECK(nlohmann::json::parse(compared.out)["rms"] < 2 * a["estimate"].get<double>());
+    CHECK(nlohmann::json::parse(compared.out)["rms"].get<double>() < 0.005);
 }
 
 TEST_CASE("what a drape to an accuracy chooses cannot be asked for as well") {

@@ -24,7 +24,8 @@ constexpr double most_finer = 0.5;
 constexpr double most_graded = 2;          // times the edge length, where cloth is flat
 constexpr double curved_most = 0.3;        // of the area: with a tenth, errors grew more than vertices went
 constexpr double aim = 0.7;                // of what is asked: estimates are off by about as much
-constexpr double share_of_residual = 0.1;  // of the discretisation error, that iterations may leave
+constexpr double share_of_residual = 0.1;  // of the error asked for, that iterations may leave
+constexpr double left_over_step = 10;      // what was left to rest over the last step at a residual below 1: 2 to 10 were seen
 
 /// What the loop over meshes has come to.
 struct AccuracyRun {
@@ -71,9 +72,12 @@ Points carried(const AccuracyRun& run, const Staging& staging) {
     return carry_drape(run.result.garment, run.result.state.positions, close_seams(staging.levels.back().garment), same);
 }
 
+/// Whether there is a drape to go on from.
+bool at_rest(const AccuracyRun& run) { return run.meshes() > 0 && run.result.status == DrapeStatus::converged; }
+
 /// As fine as `edge_length` where the mesh before shows that the cloth is curved.
 Staging mesh_for(const AccuracyRun& run, double edge_length) {
-    if (run.meshes() == 0 || !run.accuracy.graded) return run.accuracy.mesh(edge_length, {});
+    if (!at_rest(run) || !run.accuracy.graded) return run.accuracy.mesh(edge_length, {});
     GradeOptions o;
     o.edge_length = edge_length;
     o.most = most_graded * edge_length;
@@ -97,10 +101,11 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
     const auto start = AccuracyRun::Clock::now();
     const Staging staging = mesh_for(run, edge_length);
     DrapeOptions o = run.options;
-    if (run.accuracy.ends_early) o.still = share_of_residual * run.accuracy.asked;
+    if (run.accuracy.ends_early) o.still = share_of_residual / left_over_step * run.accuracy.asked;
     o.progress = part_of_meshes(run);
     o.max_seconds -= run.seconds();
-    if (run.meshes() > 0) o.from = carried(run, staging);
+    const bool goes_on = at_rest(run);
+    if (goes_on) o.from = carried(run, staging);
     DrapeResult now = drape(staging, run.avatar, run.fabrics, o);
     AccuracyMesh mesh;
     mesh.edge_length = edge_length;
@@ -108,8 +113,8 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
     mesh.motion = std::isfinite(now.last_step) ? now.last_step : 0; // at rest from the start
     for (const LevelReport& level : now.levels) mesh.iterations += level.iterations;
     mesh.seconds = std::chrono::duration<double>(AccuracyRun::Clock::now() - start).count();
-    if (run.meshes() > 0 && run.accuracy.graded) decide_graded(run, edge_length, mesh.vertices);
-    if (run.meshes() > 0) mesh.difference = compare(surface(run.result), surface(now)).rms;
+    if (goes_on && run.accuracy.graded) decide_graded(run, edge_length, mesh.vertices);
+    if (goes_on) mesh.difference = compare(surface(run.result), surface(now)).rms;
     run.result = run.meshes() > 0 ? joined(std::move(run.result), std::move(now)) : std::move(now);
     run.report.meshes.push_back(mesh);
 }
@@ -120,10 +125,10 @@ void estimate(AccuracyRun& run) {
     const AccuracyMesh &now = run.mesh(0), &before = run.mesh(1);
     const double ratio = before.edge_length / now.edge_length;
     r.order = assumed_order;
-    if (run.meshes() > 2 && *now.difference > 0 && *before.difference > 0)
+    if (before.difference && *now.difference > 0 && *before.difference > 0)
         r.order = measured_order(*before.difference, *now.difference, run.mesh(2).edge_length, before.edge_length, now.edge_length);
     r.discretisation = expected_change(*now.difference, ratio, r.order);
-    r.residual = now.motion;
+    r.residual = left_over_step * now.motion;
     r.estimate = r.discretisation + r.residual;
 }
 
@@ -144,10 +149,20 @@ double second_edge(const AccuracyRun& run) {
 /// Whether another mesh is to follow, and of what edge length.
 std::optional<double> choose_next(AccuracyRun& run) {
     AccuracyReport& r = run.report;
+    const double last = run.mesh(0).edge_length;
+    if (run.result.status == DrapeStatus::stalled && last > usual_edge * (1 + 1e-9)) { // too few triangles for limits and folds
+        if (run.meshes() > 1) r.decisions[run.edge_decision].taken_back = true;
+        const double edge = std::max(most_finer * last, run.accuracy.finest);
+        run.decide(text("a mesh of %.3g mm, sewn anew, since that of %.3g mm did not come to rest", 1e3 * edge, 1e3 * last),
+                   "residual that it came to", std::isfinite(run.result.residual) ? run.result.residual : 0);
+        run.edge_decision = r.decisions.size() - 1;
+        return edge;
+    }
     if (run.result.status != DrapeStatus::converged) return std::nullopt;
-    if (run.meshes() == 1) {
-        const double edge = second_edge(run);
-        run.decide(text("a second mesh of %.3g mm, whose difference from the first tells the error", 1e3 * edge), "RMS asked, m",
+    if (!run.mesh(0).difference) {
+        if (last <= run.accuracy.finest * (1 + 1e-9)) return std::nullopt;
+        const double edge = run.meshes() == 1 ? second_edge(run) : std::max(least_finer * last, run.accuracy.finest);
+        run.decide(text("a mesh of %.3g mm, whose difference from the first at rest tells the error", 1e3 * edge), "RMS asked, m",
                    run.accuracy.asked);
         run.edge_decision = r.decisions.size() - 1;
         return edge;
@@ -177,8 +192,8 @@ DrapeResult drape_to_accuracy(const AccuracyOptions& accuracy, const Avatar& ava
     AccuracyRun run{.accuracy = accuracy, .avatar = avatar, .fabrics = fabrics, .options = options};
     run.report.asked = accuracy.asked;
     if (accuracy.ends_early)
-        run.decide("iterations on a mesh end when the last moved no node farther than a tenth of what is asked, at a residual of 1",
-                   "a tenth of what is asked, m", share_of_residual * accuracy.asked);
+        run.decide("iterations on a mesh end when the last moved no node farther than a hundredth of what is asked, at a residual of 1",
+                   "a hundredth of what is asked, m", share_of_residual / left_over_step * accuracy.asked);
     drape_mesh(run, std::max(first_edge, accuracy.finest));
     while (const std::optional<double> edge = choose_next(run)) drape_mesh(run, *edge);
     run.result.accuracy = std::move(run.report);

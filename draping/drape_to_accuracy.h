@@ -20,8 +20,8 @@ struct AccuracyOptions {
 
 /// Drapes at a coarse edge length, and on at finer ones, each from where the mesh before came to rest, until the estimate of
 /// the error is at most `asked`, no finer mesh is allowed, or the limits of `options` end it. The estimate is what two
-/// meshes differ by, carried on by the order that three show or that is assumed (draping/accuracy.h), and what the last
-/// iteration moved: iterations end when that is below a tenth of what is asked. Result: that of the last mesh with DrapeResult::accuracy; levels and seconds are those of all. A mesh that does
+/// meshes differ by, carried on by the order that three show or that is assumed (draping/accuracy.h), and ten times
+/// what the last iteration moved: iterations end when that is below a tenth of what is asked. Result: that of the last mesh with DrapeResult::accuracy; levels and seconds are those of all. A mesh that does
 /// not come to rest ends it with its own status.
 DrapeResult drape_to_accuracy(const AccuracyOptions& accuracy, const Avatar& avatar, const PanelFabrics& fabrics,
                               const DrapeOptions& options);

@@ -213,7 +213,11 @@ void add_accuracy(CLI::App& command, DrapeJob& job) {
         .add_option_function<std::string>(
             "--accuracy",
             [&job](const std::string& word) {
-                job.accuracy = parse_length(word);
+                try {
+                    job.accuracy = parse_length(word);
+                } catch (const CommandLineError& error) {
+                    throw CLI::ValidationError("--accuracy", error.what());
+                }
                 if (job.accuracy < least || job.accuracy > most)
                     throw CLI::ValidationError("--accuracy", word + " is outside " + show_length(least) + " to " + show_length(most));
             },

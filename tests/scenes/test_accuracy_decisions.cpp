@@ -2,7 +2,6 @@
 // What a drape to an accuracy decides by itself, forced the other way: no decision may cost more than the accuracy asked for.
 #include "draping/compare.h"
 #include "draping/drape_to_accuracy.h"
-#include "geometry/simplify.h"
 #include "sewing/avatar.h"
 #include "sewing/form.h"
 #include "src/drape_input.h"
@@ -18,14 +17,12 @@ constexpr double asked = 5e-3; // m
 struct Tee {
     Pattern pattern;
     DrapeInput input;
-    Avatar form;
+    TriMesh form = make_form({});
 
     Tee() {
         std::vector<std::string> warnings;
         pattern = sound_pattern(TOILE_SOURCE_DIR "/examples/tee.json", warnings);
         input = input_of(pattern, "", 0.04);
-        form.body = make_form({});
-        form.core = smoothed_toward_core(form.body, 0.01);
     }
     AccuracyOptions options() const {
         AccuracyOptions o;
@@ -33,7 +30,7 @@ struct Tee {
         o.mesh = [this](double edge, const PlaceFactor& size) { return stage(pattern, flat_of(pattern, edge, false, size)); };
         return o;
     }
-    DrapeResult drape(const AccuracyOptions& o) const { return drape_to_accuracy(o, form, input.fabrics, {}); }
+    DrapeResult drape(const AccuracyOptions& o) const { return drape_to_accuracy(o, {form, smoothed_toward_core(form, 0.01)}, input.fabrics, {}); }
 };
 
 TriMesh surface(const DrapeResult& r) { return {r.state.positions, node_triangles(r.garment)}; }

@@ -151,7 +151,7 @@ std::optional<double> choose_next(AccuracyRun& run) {
     AccuracyReport& r = run.report;
     const double last = run.mesh(0).edge_length;
     if (run.result.status == DrapeStatus::stalled && last > usual_edge * (1 + 1e-9)) { // too few triangles for limits and folds
-        if (run.meshes() > 1) r.decisions[run.edge_decision].taken_back = true;
+        r.decisions[run.edge_decision].taken_back = true;
         const double edge = std::max(most_finer * last, run.accuracy.finest);
         run.decide(text("a mesh of %.3g mm, sewn anew, since that of %.3g mm did not come to rest", 1e3 * edge, 1e3 * last),
                    "residual that it came to", std::isfinite(run.result.residual) ? run.result.residual : 0);
@@ -194,6 +194,8 @@ DrapeResult drape_to_accuracy(const AccuracyOptions& accuracy, const Avatar& ava
     if (accuracy.ends_early)
         run.decide("iterations on a mesh end when the last moved no node farther than a hundredth of what is asked, at a residual of 1",
                    "a hundredth of what is asked, m", share_of_residual / left_over_step * accuracy.asked);
+    run.edge_decision = run.report.decisions.size();
+    run.decide(text("a first mesh of %.3g mm", 1e3 * std::max(first_edge, accuracy.finest)), "RMS asked, m", accuracy.asked);
     drape_mesh(run, std::max(first_edge, accuracy.finest));
     while (const std::optional<double> edge = choose_next(run)) drape_mesh(run, *edge);
     run.result.accuracy = std::move(run.report);

@@ -10,6 +10,8 @@ namespace toile {
 
 namespace {
 
+constexpr double unfelt = 1e-9; // m/s, by which ghost nodes are moved without a jump of the motion: held ones are, by rounding (1e-12)
+
 constexpr double immovable = 1e-10; // share of the mean mobility below which a ghost node cannot be moved
 
 // A bar is drawn in more slowly when contact has left less than this share of what it was to be drawn in by.
@@ -155,7 +157,7 @@ void finish_step(Motion& motion, const MotionOptions& options, const Points& gho
         }
     }
     finish_step(motion, options);
-    if (most > 0) motion.x_before.clear();
+    if (most > unfelt) motion.x_before.clear();
 }
 
 Points unanswered(Motion& motion, const Points& ghost_forces) {

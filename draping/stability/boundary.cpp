@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 
@@ -26,6 +27,17 @@ void sweep(std::vector<double>& excess, ChainOrder order, double end_mass) {
     }
 }
 
+/// The z up to which a period of 2 pi / z steps, each of which divides the amplitude by e^loss(z), leaves more than `left` of it; below `high`,
+/// up to where loss(z) / z grows.
+template <class Loss> double longest_swing(double high, double left, Loss loss) {
+    double low = 0;
+    for (int i = 0; i < 60; ++i) {
+        const double z = (low + high) / 2;
+        (2 * pi * loss(z) < -z * std::log(left) ? low : high) = z;
+    }
+    return low;
+}
+
 } // namespace
 
 double indefinite_step(double mass, double stiffness, double rest, double length) {
@@ -37,12 +49,12 @@ double indefinite_step(double lowest) {
 }
 
 double swing_step(double frequency, double left) {
-    double low = 0, high = 1; // log(1 + z^2) / z grows up to z = 1.98
-    for (int i = 0; i < 60; ++i) {
-        const double z = (low + high) / 2;
-        (pi * std::log(1 + z * z) < -z * std::log(left) ? low : high) = z;
-    }
-    return low / frequency;
+    // log(1 + z^2) / z grows up to z = 1.98
+    return longest_swing(1, left, [](double z) { return std::log(1 + z * z) / 2; }) / frequency;
+}
+
+double bdf2_swing_step(double frequency, double left) {
+    return longest_swing(2, left, [](double z) { return std::log(std::abs(2.0 - std::sqrt(std::complex<double>(1, 2 * z)))); }) / frequency;
 }
 
 double projective_rate(double strain, double shared) { return 1 - (strain / (1 + strain) + shared) / (1 + shared); }

@@ -19,6 +19,9 @@ double indefinite_step(double lowest);
 /// A step divides the amplitude by sqrt(1 + z^2), z = frequency h, and a period has 2 pi / z of them: pi log(1 + z^2) = -z log(left).
 double swing_step(double frequency, double left);
 
+/// The same of BDF2: a step divides the amplitude by |2 - sqrt(1 + 2 i z)|.
+double bdf2_swing_step(double frequency, double left);
+
 /// What an iteration of projective dynamics leaves of an error across cloth that is drawn out by `strain`. Lines of unit stiffness are
 /// bound by 1 in all directions, and resist turning by 1 - 1 / (1 + strain) alone: the rest of it is left. `shared` is what both
 /// have beside (bending over stretch): 1 - strain / (1 + strain) without it, which is 1 - strain for small ones.

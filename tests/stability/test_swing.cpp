@@ -4,6 +4,7 @@
 #include "draping/stability/boundary.h"
 #include "tests/stability/scenes.h"
 
+#include <complex>
 #include <numbers>
 
 using namespace toile;
@@ -14,6 +15,10 @@ TEST_CASE("stability: half of the amplitude is left by steps of 0.2262 of a radi
     CHECK(z == Approx(0.2262).epsilon(1e-3));
     CHECK(std::pow(1 + z * z, -std::numbers::pi / z) == Approx(0.5).epsilon(1e-9));
     CHECK(swing_step(7, 0.5) == Approx(z / 7));
+    const double z2 = bdf2_swing_step(1, 0.5);
+    CHECK(z2 == Approx(1.5).epsilon(0.01));
+    CHECK(std::pow(std::abs(2.0 - std::sqrt(std::complex<double>(1, 2 * z2))), -2 * std::numbers::pi / z2) == Approx(0.5).epsilon(1e-9));
+    CHECK(std::pow(bdf2_swing_step(1, 0.999), 3) == Approx(-2 * std::log(0.999) / std::numbers::pi).epsilon(0.02)); // exp(-pi z^3 / 2) for short ones
     CHECK(swing_step(1, 0.99) == Approx(-std::log(0.99) / std::numbers::pi).epsilon(1e-3)); // exp(-pi z) for short ones
 }
 

@@ -36,8 +36,6 @@ Timed drape_timed(const DrapeJob& job) {
     return t;
 }
 
-TriMesh surface(const DrapeResult& r) { return {r.state.positions, node_triangles(r.garment)}; }
-
 /// Of a drape written to `file`, m; negative when the finer one does not come to rest.
 double true_error(DrapeJob job, const DrapeResult& r, const std::string& file, double edge_length) {
     job.accuracy = 0;

@@ -174,6 +174,8 @@ void sew_and_drape(DrapeRun& run) {
 
 } // namespace
 
+TriMesh surface(const DrapeResult& r) { return {r.state.positions, node_triangles(r.garment)}; }
+
 const char* to_string(DrapeStatus s) {
     switch (s) {
     case DrapeStatus::converged: return "converged";

@@ -133,6 +133,9 @@ struct DrapeResult {
     std::vector<std::string> warnings;
 };
 
+/// The triangles of the garment where it lies.
+TriMesh surface(const DrapeResult& result);
+
 /// Sews and drapes: sew, weld, grow, settle and refine on every level from coarse to fine, prove. A seam that
 /// cannot be closed ends it: status stalled, and the garment is the coarsest, open where it would not close. `fabrics` has one
 /// entry per panel. Throws std::runtime_error only for input that check() would have refused.

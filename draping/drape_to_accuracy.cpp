@@ -16,12 +16,10 @@ namespace toile {
 
 namespace {
 
-constexpr double first_edge = 0.04;        // m: the coarsest level of a drape
 constexpr double usual_edge = 0.02;        // m, at which real garments were 1 to 3 mm from their drape at half of it,
 constexpr double usual_error = 2e-3;       // by docs/accuracy.md
 constexpr double least_finer = 0.71;       // of the edge length: smaller steps tell too little for their time
 constexpr double most_finer = 0.5;
-constexpr double most_graded = 2;          // times the edge length, where cloth is flat
 constexpr double curved_most = 0.3;        // of the area: with a tenth, errors grew more than vertices went
 constexpr double aim = 0.7;                // of what is asked: estimates are off by about as much
 constexpr double share_of_residual = 0.1;  // of the error asked for, that iterations may leave
@@ -38,7 +36,11 @@ struct AccuracyRun {
     DrapeResult result = {};
     AccuracyReport report = {};
     std::size_t edge_decision = 0; ///< the last about an edge length
+    bool out_of_time = false;      ///< the budget did not suffice for the last mesh, which was taken back
 
+    /// m: what is asked, or of a budget what it may come to by what is known.
+    double goal() const { return !accuracy.budget ? accuracy.asked : report.estimate.value_or(usual_error); }
+    double seconds_left() const { return accuracy.budget.value_or(std::numeric_limits<double>::infinity()) - seconds(); }
     double seconds() const { return std::chrono::duration<double>(Clock::now() - started).count(); }
     void decide(std::string what, std::string measure, double value) {
         report.decisions.push_back({std::move(what), std::move(measure), value, false});
@@ -46,8 +48,6 @@ struct AccuracyRun {
     int meshes() const { return int(report.meshes.size()); }
     const AccuracyMesh& mesh(int from_last) const { return report.meshes[report.meshes.size() - 1 - from_last]; }
 };
-
-TriMesh surface(const DrapeResult& r) { return {r.state.positions, node_triangles(r.garment)}; }
 
 /// Work on k meshes done fills half of what is left, whatever comes after.
 std::function<bool(const DrapeProgress&)> part_of_meshes(const AccuracyRun& run) {
@@ -75,24 +75,28 @@ Points carried(const AccuracyRun& run, const Staging& staging) {
 /// Whether there is a drape to go on from.
 bool at_rest(const AccuracyRun& run) { return run.meshes() > 0 && run.result.status == DrapeStatus::converged; }
 
-/// As fine as `edge_length` where the mesh before shows that the cloth is curved.
+/// Whether the next mesh need not be equally fine everywhere: it takes two that were. Where a single mesh of 40 mm is flat,
+/// finer triangles fold all the same, and triangles that stay as coarse do not show by how far.
+bool may_grade(const AccuracyRun& run) { return at_rest(run) && run.accuracy.graded && run.mesh(0).difference; }
+
+/// As fine as `edge_length` where the mesh before shows that the cloth is curved, as fine as that elsewhere.
 Staging mesh_for(const AccuracyRun& run, double edge_length) {
-    if (!at_rest(run) || !run.accuracy.graded) return run.accuracy.mesh(edge_length, {});
+    if (!may_grade(run)) return run.accuracy.mesh(edge_length, {});
     GradeOptions o;
     o.edge_length = edge_length;
-    o.most = most_graded * edge_length;
+    o.most = run.mesh(0).edge_length;
     o.curved = curved_most;
     const Garment& g = run.result.garment;
     const PlaceFactor edge = over_panels(g, graded_edges(g, run.result.state.positions, o));
     return run.accuracy.mesh(o.most, [&](int panel, const Vec2& at) { return edge(panel, at) / o.most; });
 }
 
-void decide_graded(AccuracyRun& run, double edge_length, int vertices) {
+void decide_graded(AccuracyRun& run, double edge_length, double most, int vertices) {
     double area = 0;
     for (const Mat2& edges : run.result.garment.rest.edges) area += rest_area(edges);
     const double uniform = area / (std::sqrt(3.0) / 2 * edge_length * edge_length);
     run.decide(text("edges of %.3g mm on the %.0f %% of the cloth that is curved most, and up to %.3g mm elsewhere", 1e3 * edge_length,
-                    100 * curved_most, 1e3 * most_graded * edge_length),
+                    100 * curved_most, 1e3 * most),
                "vertices over those of equal triangles everywhere", vertices / uniform);
 }
 
@@ -101,19 +105,28 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
     const auto start = AccuracyRun::Clock::now();
     const Staging staging = mesh_for(run, edge_length);
     DrapeOptions o = run.options;
-    if (run.accuracy.ends_early) o.still = share_of_residual / left_over_step * run.accuracy.asked;
+    if (run.accuracy.ends_early) o.still = share_of_residual / left_over_step * run.goal();
     o.progress = part_of_meshes(run);
-    o.max_seconds -= run.seconds();
+    o.max_seconds = std::min(o.max_seconds - run.seconds(), run.seconds_left());
     const bool goes_on = at_rest(run);
+    const std::optional<double> graded_to = may_grade(run) ? std::optional(run.mesh(0).edge_length) : std::nullopt;
     if (goes_on) o.from = carried(run, staging);
     DrapeResult now = drape(staging, run.avatar, run.fabrics, o);
+    if (goes_on && now.status == DrapeStatus::limit && run.seconds_left() <= 0) {
+        run.report.decisions[run.edge_decision].taken_back = true;
+        run.decide(text("the drape is that of the mesh of %.3g mm, since one of %.3g mm did not come to rest in the budget",
+                        1e3 * run.mesh(0).edge_length, 1e3 * edge_length),
+                   "residual that it came to", std::isfinite(now.residual) ? now.residual : 0);
+        run.out_of_time = true;
+        return;
+    }
     AccuracyMesh mesh;
     mesh.edge_length = edge_length;
     mesh.vertices = int(now.garment.uv.size());
     mesh.motion = std::isfinite(now.last_step) ? now.last_step : 0; // at rest from the start
     for (const LevelReport& level : now.levels) mesh.iterations += level.iterations;
     mesh.seconds = std::chrono::duration<double>(AccuracyRun::Clock::now() - start).count();
-    if (goes_on && run.accuracy.graded) decide_graded(run, edge_length, mesh.vertices);
+    if (graded_to) decide_graded(run, edge_length, *graded_to, mesh.vertices);
     if (goes_on) mesh.difference = compare(surface(run.result), surface(now)).rms;
     run.result = run.meshes() > 0 ? joined(std::move(run.result), std::move(now)) : std::move(now);
     run.report.meshes.push_back(mesh);
@@ -124,7 +137,7 @@ void estimate(AccuracyRun& run) {
     AccuracyReport& r = run.report;
     const AccuracyMesh &now = run.mesh(0), &before = run.mesh(1);
     const double ratio = before.edge_length / now.edge_length;
-    r.order = assumed_order;
+    r.order = cautious_order;
     if (before.difference && *now.difference > 0 && *before.difference > 0)
         r.order = measured_order(*before.difference, *now.difference, run.mesh(2).edge_length, before.edge_length, now.edge_length);
     r.discretisation = expected_change(*now.difference, ratio, r.order);
@@ -136,14 +149,33 @@ void estimate(AccuracyRun& run) {
 double next_edge(const AccuracyRun& run) {
     const AccuracyReport& r = run.report;
     const double edge = run.mesh(0).edge_length, wanted = aim * run.accuracy.asked / r.discretisation;
+    if (!run.mesh(1).difference) return std::max(least_finer * edge, run.accuracy.finest); // the order is not known
     const double share = r.order > 0 ? std::pow(wanted, 1 / r.order) : most_finer;
     return std::max(edge * std::clamp(share, most_finer, least_finer), run.accuracy.finest);
+}
+
+/// The finest mesh that is expected to fit in the budget; nothing: none that is much finer than the last.
+std::optional<double> edge_in_budget(AccuracyRun& run) {
+    if (run.out_of_time) return std::nullopt;
+    const AccuracyMesh& last = run.mesh(0);
+    const double left = run.seconds_left(), share = left > 0 ? std::sqrt(last.seconds / left) : 1; // seconds go with the vertices
+    const double edge = std::max(last.edge_length * std::max(share, most_finer), run.accuracy.finest);
+    if (edge <= least_finer * last.edge_length * (1 + 1e-9)) return edge;
+    run.decide(text("no mesh finer than %.3g mm, since one of %.3g mm is not expected to fit", 1e3 * last.edge_length,
+                    1e3 * least_finer * last.edge_length),
+               "seconds left of the budget", left);
+    return std::nullopt;
 }
 
 /// Of the second mesh, before anything is known of this garment's errors.
 double second_edge(const AccuracyRun& run) {
     const double usual = usual_edge * std::pow(run.accuracy.asked / usual_error, 1 / assumed_order);
-    return std::max(std::clamp(usual, most_finer * first_edge, least_finer * first_edge), run.accuracy.finest);
+    return std::max(std::clamp(usual, most_finer * first_accuracy_edge, least_finer * first_accuracy_edge), run.accuracy.finest);
+}
+
+void decide_edge(AccuracyRun& run, std::string what, std::string measure, double value) {
+    run.decide(std::move(what), std::move(measure), value);
+    run.edge_decision = run.report.decisions.size() - 1;
 }
 
 /// Whether another mesh is to follow, and of what edge length.
@@ -153,18 +185,23 @@ std::optional<double> choose_next(AccuracyRun& run) {
     if (run.result.status == DrapeStatus::stalled && last > usual_edge * (1 + 1e-9)) { // too few triangles for limits and folds
         r.decisions[run.edge_decision].taken_back = true;
         const double edge = std::max(most_finer * last, run.accuracy.finest);
-        run.decide(text("a mesh of %.3g mm, sewn anew, since that of %.3g mm did not come to rest", 1e3 * edge, 1e3 * last),
-                   "residual that it came to", std::isfinite(run.result.residual) ? run.result.residual : 0);
-        run.edge_decision = r.decisions.size() - 1;
+        decide_edge(run, text("a mesh of %.3g mm, sewn anew, since that of %.3g mm did not come to rest", 1e3 * edge, 1e3 * last),
+                    "residual that it came to", std::isfinite(run.result.residual) ? run.result.residual : 0);
         return edge;
     }
     if (run.result.status != DrapeStatus::converged) return std::nullopt;
+    if (run.accuracy.budget) {
+        if (run.mesh(0).difference && !run.out_of_time) estimate(run);
+        r.met = true;
+        const std::optional<double> edge = edge_in_budget(run);
+        if (edge) decide_edge(run, text("a mesh of %.3g mm, which is expected to fit", 1e3 * *edge), "seconds left of the budget", run.seconds_left());
+        return edge;
+    }
     if (!run.mesh(0).difference) {
         if (last <= run.accuracy.finest * (1 + 1e-9)) return std::nullopt;
         const double edge = run.meshes() == 1 ? second_edge(run) : std::max(least_finer * last, run.accuracy.finest);
-        run.decide(text("a mesh of %.3g mm, whose difference from the first at rest tells the error", 1e3 * edge), "RMS asked, m",
-                   run.accuracy.asked);
-        run.edge_decision = r.decisions.size() - 1;
+        decide_edge(run, text("a mesh of %.3g mm, whose difference from the first at rest tells the error", 1e3 * edge), "RMS asked, m",
+                    run.accuracy.asked);
         return edge;
     }
     estimate(run);
@@ -180,8 +217,7 @@ std::optional<double> choose_next(AccuracyRun& run) {
     }
     const double edge = next_edge(run);
     r.decisions[run.edge_decision].taken_back = true; // it was not fine enough
-    run.decide(text("a finer mesh of %.3g mm", 1e3 * edge), by, *r.estimate);
-    run.edge_decision = r.decisions.size() - 1;
+    decide_edge(run, text("a finer mesh of %.3g mm", 1e3 * edge), by, *r.estimate);
     return edge;
 }
 
@@ -190,13 +226,15 @@ std::optional<double> choose_next(AccuracyRun& run) {
 DrapeResult drape_to_accuracy(const AccuracyOptions& accuracy, const Avatar& avatar, const PanelFabrics& fabrics,
                               const DrapeOptions& options) {
     AccuracyRun run{.accuracy = accuracy, .avatar = avatar, .fabrics = fabrics, .options = options};
-    run.report.asked = accuracy.asked;
+    run.report.budget = accuracy.budget;
+    if (!accuracy.budget) run.report.asked = accuracy.asked;
+    const std::string whole = accuracy.budget ? "the estimate of the error" : "what is asked";
     if (accuracy.ends_early)
-        run.decide("iterations on a mesh end when the last moved no node farther than a hundredth of what is asked, at a residual of 1",
-                   "a hundredth of what is asked, m", share_of_residual / left_over_step * accuracy.asked);
-    run.edge_decision = run.report.decisions.size();
-    run.decide(text("a first mesh of %.3g mm", 1e3 * std::max(first_edge, accuracy.finest)), "RMS asked, m", accuracy.asked);
-    drape_mesh(run, std::max(first_edge, accuracy.finest));
+        run.decide("iterations on a mesh end when the last moved no node farther than a hundredth of " + whole + ", at a residual of 1",
+                   "a hundredth of " + whole + ", m", share_of_residual / left_over_step * run.goal());
+    decide_edge(run, text("a first mesh of %.3g mm", 1e3 * std::max(first_accuracy_edge, accuracy.finest)),
+                accuracy.budget ? "seconds of the budget" : "RMS asked, m", accuracy.budget.value_or(accuracy.asked));
+    drape_mesh(run, std::max(first_accuracy_edge, accuracy.finest));
     while (const std::optional<double> edge = choose_next(run)) drape_mesh(run, *edge);
     run.result.accuracy = std::move(run.report);
     return std::move(run.result);

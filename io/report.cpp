@@ -145,8 +145,10 @@ Json accuracy(const AccuracyReport& a) {
                           {"motion", m.motion}});
     for (const AccuracyDecision& d : a.decisions)
         decisions.push_back({{"decision", d.what}, {"measure", d.measure}, {"value", d.value}, {"taken_back", d.taken_back}});
-    return {{"asked", a.asked},
-            {"estimate", a.estimate ? Json(*a.estimate) : Json(nullptr)},
+    const auto or_null = [](const std::optional<double>& v) { return v ? Json(*v) : Json(nullptr); };
+    return {{"asked", or_null(a.asked)},
+            {"budget", or_null(a.budget)},
+            {"estimate", or_null(a.estimate)},
             {"discretisation", a.discretisation},
             {"residual", a.residual},
             {"order", a.order},

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "sewing/sheet_mesh.h"
 
+#include "geometry/random.h"
 #include "patterns/triangulate.h"
 #include "sewing/mesh_grain.h"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <random>
 
 namespace toile {
 
@@ -62,9 +62,8 @@ SheetMesh jittered(SheetMesh mesh, double share, unsigned seed) {
     for (const auto& [ends, count] : sides)
         if (count == 1) shortest[ends[0]] = shortest[ends[1]] = 0; // on the border
     std::mt19937_64 random(seed);
-    const auto off = [&] { return 2 * double(random() >> 11) * 0x1p-53 - 1; }; // distributions differ between libraries, raw bits do not
     for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-        const double x = off(), y = off();
+        const double x = next_signed(random), y = next_signed(random);
         mesh.points[i] += share * shortest[i] * Vec2(x, y);
     }
     return mesh;

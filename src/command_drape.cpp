@@ -77,7 +77,7 @@ void refuse_useless_frames(const DrapeArguments& a) {
 
 /// The same of what a drape to an accuracy chooses itself.
 void refuse_useless_accuracy(const DrapeArguments& a) {
-    if (a.job.accuracy == 0) return;
+    if (!is_to_accuracy(a.job)) return;
     const auto refuse = [](const std::string& what) {
         throw CommandLineError("--accuracy " + what + "; leave one of them out");
     };
@@ -127,7 +127,7 @@ void summarise_motion(std::ostream& out, const MotionReport& m) {
 }
 
 void summarise_accuracy(std::ostream& out, const AccuracyReport& a) {
-    out << "accuracy: " << (a.estimate ? "about " + show_length(*a.estimate) : "unknown") << " of " << show_length(a.asked)
+    out << "accuracy: " << (a.estimate ? "about " + show_length(*a.estimate) : "unknown") << (a.asked ? " of " + show_length(*a.asked) : text(" in %g s", *a.budget))
         << (a.met ? "" : ", not met") << ", meshes of";
     for (const AccuracyMesh& m : a.meshes) out << text(" %.3g", 1e3 * m.edge_length);
     out << " mm\n";
@@ -206,23 +206,31 @@ std::string joined_by_bars(const std::vector<std::string>& names) {
     return text;
 }
 
-/// --accuracy, which is without a default.
+/// --accuracy, which is without a default: a length, or a duration.
 void add_accuracy(CLI::App& command, DrapeJob& job) {
-    constexpr double least = 1e-4, most = 0.05; // m: below it rounding of contact would count, above it any mesh does
+    constexpr double least = 1e-4, most = 0.05;          // m: below it rounding of contact would count, above it any mesh does
+    constexpr double least_time = 1, most_time = 1e5;    // s
+    const auto set = [&job](const std::string& word) {
+        job.accuracy = job.accuracy_seconds = 0;
+        try {
+            job.accuracy = parse_length(word);
+        } catch (const CommandLineError& no_length) {
+            try {
+                job.accuracy_seconds = parse_duration(word);
+            } catch (const CommandLineError&) {
+                throw CLI::ValidationError("--accuracy", no_length.what() + std::string(", or a time such as 30s"));
+            }
+        }
+        if (job.accuracy_seconds > 0 ? job.accuracy_seconds < least_time || job.accuracy_seconds > most_time
+                                     : job.accuracy < least || job.accuracy > most)
+            throw CLI::ValidationError("--accuracy", word + " is outside " + show_length(least) + " to " + show_length(most) +
+                                                         text(", or %g to %g s", least_time, most_time));
+    };
     command
-        .add_option_function<std::string>(
-            "--accuracy",
-            [&job](const std::string& word) {
-                try {
-                    job.accuracy = parse_length(word);
-                } catch (const CommandLineError& error) {
-                    throw CLI::ValidationError("--accuracy", error.what());
-                }
-                if (job.accuracy < least || job.accuracy > most)
-                    throw CLI::ValidationError("--accuracy", word + " is outside " + show_length(least) + " to " + show_length(most));
-            },
-            "Error that the drape may have: meshes are chosen for it during the run, by docs/accuracy.md")
-        ->type_name("LENGTH");
+        .add_option_function<std::string>("--accuracy", set,
+                                          "Error that the drape may have, or time to make it as small as it goes: meshes are chosen for "
+                                          "it during the run, by docs/accuracy.md")
+        ->type_name("LENGTH|DURATION");
 }
 
 /// --method and what only some methods have.

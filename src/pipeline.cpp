@@ -109,7 +109,7 @@ std::string input_hash(const DrapeJob& job, const std::vector<std::string>& file
          {double(how.limits.sweeps), how.time_step, how.damping_time, how.beyond, job.form.height, job.form.bust, job.form.waist, job.form.hip, job.edge_length, job.drape.tolerance,
           job.drape.clearance, job.drape.friction, job.drape.cloth_friction, job.drape.gravity})
         hash.add(std::to_string(value) + ' ');
-    if (job.accuracy > 0) hash.add(std::to_string(job.accuracy) + " accuracy ");
+    if (is_to_accuracy(job)) hash.add(std::to_string(job.accuracy) + ' ' + std::to_string(job.accuracy_seconds) + " accuracy ");
     if (const AnimateOptions& a = job.drape.animation; is_animated(job.drape))
         for (const double value : {a.duration, a.rate, a.air_damping}) hash.add(std::to_string(value) + " animation ");
     return hash.text();
@@ -176,8 +176,6 @@ void refuse_too_many_frames(const DrapeJob& job, const Garment& garment) {
                          show_size(most_animation) + " that are written" + advice);
 }
 
-constexpr double coarse_edge = 0.04; // m, at which a drape to an accuracy is checked before it begins
-
 /// A drape to an accuracy chooses its meshes.
 void refuse_meshes_of_their_own(const DrapeJob& job, const Pattern& pattern) {
     if (is_staged(job.pattern))
@@ -190,6 +188,7 @@ void refuse_meshes_of_their_own(const DrapeJob& job, const Pattern& pattern) {
 AccuracyOptions accuracy_options(const DrapeJob& job, const Pattern& pattern) {
     AccuracyOptions o;
     o.asked = job.accuracy;
+    if (job.accuracy_seconds > 0) o.budget = job.accuracy_seconds;
     o.finest = std::max(o.finest, finest_edge(pattern, job.drape.max_memory));
     o.mesh = [&pattern](double edge_length, const PlaceFactor& size) {
         return stage(pattern, flat_of(pattern, edge_length, false, size));
@@ -328,10 +327,10 @@ DrapeOutcome run_job(const DrapeJob& job) {
     const Avatar avatar{body, std::move(core)};
     watch.lap(context, "read");
 
-    if (job.accuracy > 0) refuse_meshes_of_their_own(job, pattern);
+    if (is_to_accuracy(job)) refuse_meshes_of_their_own(job, pattern);
     const DrapeInput input = is_staged(job.pattern)
                                  ? read_staged_input(job.pattern, job.fabric, body)
-                                 : input_of(pattern, job.fabric, job.accuracy > 0 ? coarse_edge : job.edge_length, job.drape.max_memory,
+                                 : input_of(pattern, job.fabric, is_to_accuracy(job) ? first_accuracy_edge : job.edge_length, job.drape.max_memory,
                                             needs_grain_lattice(job.drape.method));
     if (const Panel* panel = moulded_panel(pattern)) note_moulded(job, *panel, context.warnings);
     context.input_hash = input_hash(job, input.files);
@@ -345,7 +344,7 @@ DrapeOutcome run_job(const DrapeJob& job) {
     options.max_seconds -= watch.total();
     options.from = earlier_positions(job.from, input.staging, context.decisions);
     options.progress = part_of_job(job, 0, 1 / double(1 + sequence.frames.size()));
-    outcome.result = job.accuracy > 0 ? drape_to_accuracy(accuracy_options(job, pattern), avatar, input.fabrics, options)
+    outcome.result = is_to_accuracy(job) ? drape_to_accuracy(accuracy_options(job, pattern), avatar, input.fabrics, options)
                                       : drape(input.staging, avatar, input.fabrics, options);
     if (job.interrupted && job.interrupted())
         outcome.result.where = "stopped by a signal before it had converged";

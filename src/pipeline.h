@@ -21,7 +21,8 @@ struct DrapeJob {
     bool repair_avatar = false;
     std::string fabric;        ///< preset or file; empty: what the pattern says, else poplin
     double edge_length = 0.01; ///< m, mean edge of the finest mesh; a staged mesh keeps its own
-    double accuracy = 0;       ///< m, RMS; not 0: edge lengths are chosen for it, and edge_length is not used
+    double accuracy = 0;         ///< m, RMS; not 0: edge lengths are chosen for it, and edge_length is not used
+    double accuracy_seconds = 0; ///< s; not 0: they are chosen such that the error gets as small as it goes in that time
     std::string from;          ///< garment file to start from; empty: the pattern's own placement
     DrapeOptions drape;
     std::function<bool()> interrupted; ///< whether drape.progress stopped the work; for the report's `where`
@@ -32,6 +33,8 @@ struct DrapeJob {
     WriteOptions write;                ///< unit and up axis; its avatar is set by with_avatar
     bool with_avatar = false;
 };
+
+inline bool is_to_accuracy(const DrapeJob& job) { return job.accuracy > 0 || job.accuracy_seconds > 0; }
 
 struct DrapeOutcome {
     DrapeResult result;

@@ -38,6 +38,7 @@ MidpointCloth::MidpointCloth(const Garment& garment, const std::vector<Fabric>& 
         to_weights_.push_back(to_stress.inverse());
     }
     beyond_compact_ = cloth_.bending.stiffness - cloth_.bending.compact;
+    for (const Bar& bar : cloth_.bars) mean_length_ += bar.length / double(cloth_.bars.size());
     constant_ = constants();
 }
 
@@ -100,13 +101,7 @@ double MidpointCloth::pull(int b, const Points& x) const {
 double MidpointCloth::largest_gap(const Points& x) const {
     double most = 0;
     for (const Vec3& gap : gaps(x)) most = std::max(most, gap.norm());
-    return most / mean_length();
-}
-
-double MidpointCloth::mean_length() const {
-    double mean = 0;
-    for (const Bar& bar : cloth_.bars) mean += bar.length / double(cloth_.bars.size());
-    return mean;
+    return most / mean_length_;
 }
 
 std::optional<double> MidpointCloth::kept_strain(const Points& x) const { return largest_triangle_strain(garment_, midpoints(x)); }
@@ -199,14 +194,16 @@ bool MidpointCloth::take_up(const Points& x) {
                                               : harder(stiffness_[b], std::abs(c[b]), last_misfit_[b], cloth_.bars[b].length);
     last_misfit_ = c.cwiseAbs();
     const Points gap_now = gaps(x);
-    const double length = mean_length();
+    const Eigen::VectorXd ties_before = tie_;
     for (int i = 0; i < nodes_; ++i) {
         held_[i] += tie_[i] * gap_now[i];
-        tie_[i] = harder(tie_[i], gap_now[i].norm(), last_gap_[i], length);
+        tie_[i] = harder(tie_[i], gap_now[i].norm(), last_gap_[i], mean_length_);
         last_gap_[i] = gap_now[i].norm();
     }
-    const std::vector<Constant> now = constants(); // of the same blocks
-    for (std::size_t k = 0; k < now.size(); ++k) constant_[k].value = now[k].value;
+    if (tie_ != ties_before) {
+        const std::vector<Constant> now = constants(); // of the same blocks
+        for (std::size_t k = 0; k < now.size(); ++k) constant_[k].value = now[k].value;
+    }
     return std::max(strain, gap) > kept;
 }
 

@@ -48,7 +48,6 @@ private:
     };
 
     Points gaps(const Points& x) const;
-    double mean_length() const; ///< m, of bars
     std::vector<Constant> constants() const;
     double pull(int bar, const Points& x) const;
 
@@ -67,6 +66,7 @@ private:
     Eigen::SparseMatrix<double, Eigen::RowMajor> beyond_compact_;
     std::vector<Constant> constant_;     ///< lower triangle of compact bending and ties
     std::vector<int> bar_slot_;
+    double mean_length_ = 0;             ///< m, of bars
 };
 
 } // namespace toile

@@ -3,6 +3,7 @@
 
 #include "draping/chart/scene_rest.h"
 #include "draping/solve/stepper.h"
+#include "draping/stability/beam.h"
 #include "draping/stability/boundary.h"
 #include "draping/stability/strip.h"
 
@@ -23,15 +24,8 @@ constexpr double grown = 2;        // times the energy at the start
 constexpr double died = 0.1;       // of the amplitude
 constexpr double least_left = 0.5; // of it after a period
 constexpr double unslowed = 1e3;   // m in a step
-constexpr double root = 1.8751040687; // of 1 + cos x cosh x
 
-/// The slowest motion of a clamped beam of unit length, 2 at its free end.
-double mode(double s) {
-    const double ratio = (std::cosh(root) + std::cos(root)) / (std::sinh(root) + std::sin(root));
-    return std::cosh(root * s) - std::cos(root * s) - ratio * (std::sinh(root * s) - std::sin(root * s));
-}
-
-double frequency(const Fabric& f) { return root * root * std::sqrt(f.bend_warp / f.density) / (strip_length * strip_length); }
+double frequency(const Fabric& f) { return beam_root * beam_root * std::sqrt(f.bend_warp / f.density) / (strip_length * strip_length); }
 
 StabilityOutcome pluck(Method method, const SceneCloth& cloth, double step) {
     const std::unique_ptr<Response> response = no_response(cloth.garment);
@@ -41,7 +35,7 @@ StabilityOutcome pluck(Method method, const SceneCloth& cloth, double step) {
         make_stepper(method, cloth.garment, cloth.fabrics, held_nodes(cloth), *response, {step, 0, unslowed}, how);
     const double w = frequency(cloth.fabrics[0]);
     std::vector<double> shape;
-    for (const Vec3& p : cloth.x) shape.push_back(0.5 * mode(std::abs(p.x()) / strip_length));
+    for (const Vec3& p : cloth.x) shape.push_back(0.5 * beam_mode(std::abs(p.x()) / strip_length));
     Moving moving{cloth.x};
     for (std::size_t i = 0; i < shape.size(); ++i) moving.x[i].y() += amplitude * shape[i];
     shake(moving.x, noise);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/stability/strip.h"
 
+#include "geometry/random.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
-#include <random>
 
 namespace toile {
 
@@ -50,7 +51,7 @@ std::vector<char> held_nodes(const SceneCloth& cloth) {
 
 void shake(Points& x, double size) {
     std::mt19937_64 random(1);
-    for (double& c : flat(x)) c += size * (2 * double(random() >> 11) * 0x1p-53 - 1); // raw bits are the same in all libraries
+    for (double& c : flat(x)) c += size * next_signed(random);
 }
 
 double lowest_eigenvalue(NodeProblem& problem, const Points& x) {

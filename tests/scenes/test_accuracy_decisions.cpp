@@ -33,8 +33,6 @@ struct Tee {
     DrapeResult drape(const AccuracyOptions& o) const { return drape_to_accuracy(o, {form, smoothed_toward_core(form, 0.01)}, input.fabrics, {}); }
 };
 
-TriMesh surface(const DrapeResult& r) { return {r.state.positions, node_triangles(r.garment)}; }
-
 } // namespace
 
 TEST_CASE("decisions of a drape to an accuracy cost no more than it when forced the other way") {

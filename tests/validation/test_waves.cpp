@@ -4,6 +4,7 @@
 #include "draping/cloth.h"
 #include "draping/method.h"
 #include "draping/solve/implicit.h"
+#include "draping/stability/beam.h"
 #include "tests/support/free_springs.h"
 #include "tests/support/midpoint_strip.h"
 #include "tests/support/plates.h"
@@ -116,12 +117,9 @@ constexpr double beam_length = 0.2;
 /// Both arms of a strip that is clamped in its middle: w = 1.8751^2 sqrt(B / (rho L^4)).
 Scene cantilever(const FlatMesh& half, double stretch) {
     const Fabric fabric = cloth(stretch, stretch / 2, 1e-3);
-    const double b = 1.8751040687, ratio = (std::cosh(b) + std::cos(b)) / (std::sinh(b) + std::sin(b));
-    const double w = b * b * std::sqrt(fabric.bend_weft / (fabric.density * std::pow(beam_length, 4)));
+    const double w = beam_root * beam_root * std::sqrt(fabric.bend_weft / (fabric.density * std::pow(beam_length, 4)));
     return scene(with_mirror_image(half), fabric, w, [&](const Vec2& p) {
-        const double at = b * std::abs(p.x()) / beam_length;
-        const double z = std::cosh(at) - std::cos(at) - ratio * (std::sinh(at) - std::sin(at));
-        return std::pair(Vec3(p.x(), p.y(), 0), Vec3(0, 0, 1e-4 * z));
+        return std::pair(Vec3(p.x(), p.y(), 0), Vec3(0, 0, 1e-4 * beam_mode(std::abs(p.x()) / beam_length)));
     });
 }
 

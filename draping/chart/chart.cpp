@@ -62,6 +62,7 @@ std::optional<double> exact_value(const Scene& scene, const SceneCloth& cloth, M
 
 ChartScene answered(const Scene& scene, int meshes) {
     if (scene.answer) return {scene, *scene.answer, "theory"};
+    if (scene.band) return {scene, (scene.band->low + scene.band->high) / 2, text("measurements, %.3g to %.3g", scene.band->low, scene.band->high)};
     const double edge = scene.edges[std::min<std::size_t>(meshes, scene.edges.size()) - 1];
     const SceneCloth coarse = scene.make(edge), fine = scene.make(edge / 2);
     const std::optional<double> a = exact_value(scene, coarse, Method::equilibrium), b = exact_value(scene, fine, Method::equilibrium);
@@ -69,6 +70,12 @@ ChartScene answered(const Scene& scene, int meshes) {
     ChartScene answered{scene, *b + (*b - *a) / 3, text("equilibria at %.3g and %.3g mm", 1000 * edge, 500 * edge)};
     answered.scene.scale = std::abs(answered.answer);
     return answered;
+}
+
+/// How far a number is off the answer, or out of the band.
+double off(const ChartScene& s, double value) {
+    if (!s.scene.band) return std::abs(value - s.answer);
+    return std::isfinite(value) ? std::max({0.0, s.scene.band->low - value, value - s.scene.band->high}) : value;
 }
 
 ChartPoint point(const ChartScene& s, const SceneCloth& cloth, double edge, Method method, double step, const ChartOptions& options) {
@@ -92,7 +99,7 @@ ChartPoint point(const ChartScene& s, const SceneCloth& cloth, double edge, Meth
     }
     p.seconds_cpu = median(cpu);
     p.seconds_wall = median(wall);
-    p.error = std::abs(p.value - s.answer) / s.scene.scale;
+    p.error = off(s, p.value) / s.scene.scale;
     if (!std::isfinite(p.error) && p.failure.empty()) p.failure = "not finite";
     return p;
 }
@@ -103,7 +110,8 @@ void mark_front(std::vector<ChartPoint>& points, std::size_t first) {
         p.front = p.failure.empty();
         for (std::size_t j = first; j < points.size() && p.front; ++j) {
             const ChartPoint& q = points[j];
-            p.front = !q.failure.empty() || q.error >= p.error || q.seconds_cpu >= p.seconds_cpu;
+            p.front = !q.failure.empty() || q.error > p.error || q.seconds_cpu > p.seconds_cpu ||
+                      (q.error == p.error && q.seconds_cpu == p.seconds_cpu);
         }
     }
 }

@@ -29,18 +29,18 @@ struct ChartPoint {
     double edge_length = 0; ///< m
     double step = 0;        ///< s; 0: the method has none, or its own
     double value = 0;       ///< what the scene measures
-    double error = 0;       ///< share of the scene's scale by which it is off the answer
+    double error = 0;       ///< share of the scene's scale by which it is off the answer, or out of the band
     std::optional<double> error_solver; ///< share by which it is off the same mesh solved as far as rounding lets it; none: unknown
     double seconds_cpu = 0;  ///< on one thread, s
     double seconds_wall = 0; ///< on all threads, s
     std::string failure;     ///< empty: at rest
-    bool front = false;      ///< of the points at rest of its scene none is both faster and nearer
+    bool front = false;      ///< of the points at rest of its scene none is faster and no farther off, or nearer and no slower
 };
 
 struct ChartScene {
     Scene scene;
-    double answer = 0;
-    std::string answer_from; ///< "theory", or which meshes
+    double answer = 0;       ///< of a band the middle
+    std::string answer_from; ///< "theory", which meshes, or "measurements"
 };
 
 struct Chart {

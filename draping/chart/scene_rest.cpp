@@ -2,6 +2,7 @@
 #include "draping/chart/scene_rest.h"
 
 #include "draping/settle_cloth.h"
+#include "draping/solve/barrier_response.h"
 #include "draping/solve/stepper.h"
 
 #include <chrono>
@@ -16,7 +17,8 @@ constexpr double time_step = 2e-3;    // s
 constexpr double most_motion = 5e-3;  // m in a step
 constexpr double rest_speed = 1e-3;   // m/s
 constexpr int most_steps = 200000;
-constexpr ContactOptions no_contact{{1, 0, 0}, {1, 0, 0}, false};
+constexpr double barrier_step = 5e-4; // s, as in a drape on a body: forces that are held from step to step follow stiff cloth the sooner
+constexpr double clearance = 0.5e-3;  // m
 
 class Deadline {
 public:
@@ -27,9 +29,19 @@ private:
     std::chrono::time_point<std::chrono::steady_clock, std::chrono::duration<double>> end_;
 };
 
+std::unique_ptr<Response> on_body(const SceneCloth& cloth) {
+    ResponseOptions answer;
+    answer.thickness = clearance;
+    answer.body_friction = cloth.friction;
+    answer.self = false;
+    return barrier_response(contact_cloth(cloth.garment), cloth.body, scene_contact(cloth), answer);
+}
+
 SceneRest by_newton(const SceneCloth& cloth, const SceneRestOptions& options, const Deadline& deadline) {
-    ClothProblem problem(make_energy(options.method, cloth.garment, cloth.fabrics, {}), cloth.garment, cloth.fabrics, {}, no_contact);
-    problem.gravity = cloth.gravity;
+    ClothProblem problem(make_energy(options.method, cloth.garment, cloth.fabrics, {}), cloth.garment, cloth.fabrics, cloth.body,
+                         scene_contact(cloth));
+    static_cast<Loads&>(problem) = cloth.loads;
+    if (cloth.friction > 0) problem.rest_here(cloth.x, {cloth.friction, 0}, true);
     for (const int i : cloth.held) problem.pin(i);
     SettleOptions o;
     o.tolerance = options.tolerance;
@@ -49,21 +61,22 @@ SceneRest by_newton(const SceneCloth& cloth, const SceneRestOptions& options, co
 }
 
 SceneRest by_motion(const SceneCloth& cloth, const SceneRestOptions& options, const Deadline& deadline) {
-    const std::unique_ptr<Response> response = no_response(cloth.garment);
+    const bool touches = !cloth.body.triangles.empty();
+    const std::unique_ptr<Response> response = touches ? on_body(cloth) : no_response(cloth.garment);
     std::vector<char> held(cloth.x.size(), 0);
     for (const int i : cloth.held) held[i] = 1;
     MethodOptions how;
     how.time_step = options.time_step;
     const std::unique_ptr<Stepper> stepper = make_stepper(options.method, cloth.garment, cloth.fabrics, held, *response,
-                                                          {time_step, damping, most_motion}, how);
-    stepper->loads().gravity = cloth.gravity;
+                                                          {touches ? barrier_step : time_step, damping, most_motion}, how);
+    stepper->loads() = cloth.loads;
     Moving moving{cloth.x};
     RestOptions o;
     o.tolerance = options.tolerance;
     o.speed = rest_speed;
     o.max_steps = most_steps;
     o.progress = [&](int, double) { return !deadline.passed(); };
-    const RestResult r = come_to_rest(*stepper, moving, {}, o);
+    const RestResult r = come_to_rest(*stepper, moving, cloth.body.points, o);
     SceneRest rest{moving.x, r.residual, r.broken};
     if (rest.failure.empty() && !r.rested) rest.failure = r.stopped ? "out of time" : "out of steps";
     return rest;
@@ -74,6 +87,12 @@ SceneRest by_motion(const SceneCloth& cloth, const SceneRestOptions& options, co
 SceneRest rest_of(const SceneCloth& cloth, const SceneRestOptions& options) {
     const Deadline deadline(options.max_seconds);
     return settles(options.method) ? by_newton(cloth, options, deadline) : by_motion(cloth, options, deadline);
+}
+
+ContactOptions scene_contact(const SceneCloth& cloth) {
+    ContactOptions contact = barriers_at(clearance, cloth.fabrics[0].density);
+    contact.self = false;
+    return contact;
 }
 
 std::unique_ptr<Response> no_response(const Garment& garment) {

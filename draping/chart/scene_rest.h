@@ -24,6 +24,9 @@ struct SceneRest {
 /// Brings a scene to rest as `toile drape` would with this method and the barrier: by Newton's steps, or by a motion that air slows.
 SceneRest rest_of(const SceneCloth& cloth, const SceneRestOptions& options);
 
+/// Of cloth with the body of its scene and not with itself, as hard as in a drape.
+ContactOptions scene_contact(const SceneCloth& cloth);
+
 /// Of cloth that meets nothing, itself included.
 std::unique_ptr<Response> no_response(const Garment& garment);
 

@@ -28,8 +28,11 @@ std::string chart_json(const Chart& chart, const ChartMachine& machine) {
     json["toile_chart"] = 1;
     json["machine"] = {{"processor", machine.processor}, {"threads", machine.threads}, {"version", machine.version}, {"blas", machine.blas}};
     json["scenes"] = nlohmann::ordered_json::array();
-    for (const ChartScene& s : chart.scenes)
-        json["scenes"].push_back({{"name", s.scene.name}, {"quantity", s.scene.quantity}, {"answer", s.answer}, {"answer_from", s.answer_from}});
+    for (const ChartScene& s : chart.scenes) {
+        nlohmann::ordered_json scene{{"name", s.scene.name}, {"quantity", s.scene.quantity}, {"answer", s.answer}, {"answer_from", s.answer_from}};
+        if (s.scene.band) scene["band"] = {s.scene.band->low, s.scene.band->high};
+        json["scenes"].push_back(std::move(scene));
+    }
     json["points"] = nlohmann::ordered_json::array();
     for (const ChartPoint& p : chart.points) {
         nlohmann::ordered_json point{{"scene", p.scene},   {"method", to_string(p.method)}, {"edge_length", p.edge_length},

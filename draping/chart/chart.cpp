@@ -9,7 +9,6 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
-#include <map>
 #include <stdexcept>
 
 namespace toile {
@@ -18,7 +17,7 @@ namespace {
 
 constexpr double exact = 1e-10;    // residual of what a solver's error is measured from, or what rounding leaves after
 constexpr int exact_iterations = 50; // so many more iterations: with a stiff membrane 1e-6
-constexpr double exact_seconds = 120;
+constexpr double answer_seconds = 120;
 
 /// s; 0: a method's own.
 std::vector<double> steps_of(Method method, int steps) {
@@ -47,25 +46,31 @@ Timed timed(const SceneCloth& cloth, const SceneRestOptions& options) {
     return t;
 }
 
-/// The number that a method which settles comes to on this mesh to the last digits.
-std::optional<double> exact_value(const Scene& scene, const SceneCloth& cloth, Method method) {
-    SceneRestOptions options{method};
-    options.max_seconds = exact_seconds;
-    const SceneRest rest = rest_of(cloth, options);
-    if (!rest.failure.empty()) return {};
-    SceneCloth near = cloth;
-    near.x = rest.x;
+/// The number that this scene at rest goes to when it is brought nearer to rest, by Newton's steps, as far as rounding lets it.
+double exact_value(const Scene& scene, const SceneCloth& cloth, const Points& x, Method method, double max_seconds) {
+    SceneRestOptions options{newton_twin(method)};
     options.tolerance = exact;
     options.max_iterations = exact_iterations;
+    options.max_seconds = max_seconds;
+    SceneCloth near = cloth;
+    near.x = x;
     return scene.measure(cloth, rest_of(near, options).x);
+}
+
+std::optional<double> equilibrium_value(const Scene& scene, double edge) {
+    const SceneCloth cloth = scene.make(edge);
+    SceneRestOptions options;
+    options.max_seconds = answer_seconds;
+    const SceneRest rest = rest_of(cloth, options);
+    if (!rest.failure.empty()) return {};
+    return exact_value(scene, cloth, rest.x, options.method, answer_seconds);
 }
 
 ChartScene answered(const Scene& scene, int meshes) {
     if (scene.answer) return {scene, *scene.answer, "theory"};
     if (scene.band) return {scene, (scene.band->low + scene.band->high) / 2, text("measurements, %.3g to %.3g", scene.band->low, scene.band->high)};
     const double edge = scene.edges[std::min<std::size_t>(meshes, scene.edges.size()) - 1];
-    const SceneCloth coarse = scene.make(edge), fine = scene.make(edge / 2);
-    const std::optional<double> a = exact_value(scene, coarse, Method::equilibrium), b = exact_value(scene, fine, Method::equilibrium);
+    const std::optional<double> a = equilibrium_value(scene, edge), b = equilibrium_value(scene, edge / 2);
     if (!a || !b) throw std::runtime_error("the scene '" + scene.name + "' has no answer: equilibrium does not come to rest on it");
     ChartScene answered{scene, *b + (*b - *a) / 3, text("equilibria at %.3g and %.3g mm", 1000 * edge, 500 * edge)};
     answered.scene.scale = std::abs(answered.answer);
@@ -78,30 +83,31 @@ double off(const ChartScene& s, double value) {
     return std::isfinite(value) ? std::max({0.0, s.scene.band->low - value, value - s.scene.band->high}) : value;
 }
 
-ChartPoint point(const ChartScene& s, const SceneCloth& cloth, double edge, Method method, double step, const ChartOptions& options) {
-    ChartPoint p;
-    p.scene = s.scene.name;
-    p.method = method;
-    p.edge_length = edge;
-    p.step = step;
-    SceneRestOptions how{method, step};
+/// Returns whether it came to an end in time.
+bool run(const ChartScene& s, const SceneCloth& cloth, const ChartOptions& options, ChartPoint& p) {
+    SceneRestOptions how{p.method, p.step};
     how.max_seconds = options.max_seconds;
     const int all = threads();
     std::vector<double> cpu, wall;
+    Points x;
+    bool in_time = true;
     for (int k = 0; k < options.repeats && p.failure.empty(); ++k) {
         set_threads(1);
         const Timed one = timed(cloth, how);
         set_threads(all);
-        cpu.push_back(one.cpu);
+        x = one.rest.x;
+        in_time = !one.rest.out_of_time;
         p.failure = one.rest.failure;
-        p.value = s.scene.measure(cloth, one.rest.x);
+        cpu.push_back(one.cpu);
         wall.push_back(p.failure.empty() ? timed(cloth, how).wall : one.wall);
     }
+    p.value = s.scene.measure(cloth, x);
     p.seconds_cpu = median(cpu);
     p.seconds_wall = median(wall);
     p.error = off(s, p.value) / s.scene.scale;
     if (!std::isfinite(p.error) && p.failure.empty()) p.failure = "not finite";
-    return p;
+    if (p.failure.empty()) p.error_solver = std::abs(p.value - exact_value(s.scene, cloth, x, p.method, options.max_seconds)) / s.scene.scale;
+    return in_time;
 }
 
 void mark_front(std::vector<ChartPoint>& points, std::size_t first) {
@@ -127,19 +133,18 @@ Chart make_chart(const ChartOptions& options) {
         const int meshes = std::min(options.meshes, int(scene.edges.size()));
         std::vector<SceneCloth> cloths;
         for (int m = 0; m < meshes; ++m) cloths.push_back(scene.make(scene.edges[m]));
-        std::map<Method, std::vector<std::optional<double>>> exactly; // by method that settles, per mesh
-        for (const Method method : options.methods) {
-            const Method twin = newton_twin(method);
-            std::vector<std::optional<double>>& best = exactly[twin];
-            for (int m = int(best.size()); m < meshes; ++m) best.push_back(exact_value(scene, cloths[m], twin));
+        for (const Method method : options.methods)
             for (const double step : steps_of(method, options.steps))
                 for (int m = 0; m < meshes; ++m) {
                     if (options.progress)
                         options.progress(text("%s, %s, %.3g mm", scene.name.c_str(), to_string(method), 1e3 * scene.edges[m]));
-                    chart.points.push_back(point(s, cloths[m], scene.edges[m], method, step, options));
-                    if (best[m]) chart.points.back().error_solver = std::abs(chart.points.back().value - *best[m]) / s.scene.scale;
+                    ChartPoint& p = chart.points.emplace_back();
+                    p.scene = scene.name;
+                    p.method = method;
+                    p.edge_length = scene.edges[m];
+                    p.step = step;
+                    if (!run(s, cloths[m], options, p)) break; // a finer mesh takes longer
                 }
-        }
         mark_front(chart.points, first);
     }
     return chart;

@@ -19,7 +19,7 @@ struct ChartOptions {
     int meshes = 4;          ///< of each scene, from the coarsest on
     int steps = 3;           ///< of methods whose accuracy at rest depends on them, from the longest on
     int repeats = 5;         ///< times are medians of as many runs
-    double max_seconds = 20; ///< of wall time, of one run; what takes longer has failed and is run once
+    double max_seconds = 20; ///< of wall time, of one run; what takes longer has failed, is run once, and on no finer mesh
     std::function<void(const std::string& what)> progress; ///< called before every run
 };
 
@@ -30,7 +30,7 @@ struct ChartPoint {
     double step = 0;        ///< s; 0: the method has none, or its own
     double value = 0;       ///< what the scene measures
     double error = 0;       ///< share of the scene's scale by which it is off the answer, or out of the band
-    std::optional<double> error_solver; ///< share by which it is off the same mesh solved as far as rounding lets it; none: unknown
+    std::optional<double> error_solver; ///< share by which it is off what it goes to as far as rounding lets it; none: it has failed
     double seconds_cpu = 0;  ///< on one thread, s
     double seconds_wall = 0; ///< on all threads, s
     std::string failure;     ///< empty: at rest

@@ -37,6 +37,11 @@ std::unique_ptr<Response> on_body(const SceneCloth& cloth) {
     return barrier_response(contact_cloth(cloth.garment), cloth.body, scene_contact(cloth), answer);
 }
 
+void fail_late(SceneRest& rest) {
+    rest.failure = "out of time";
+    rest.out_of_time = true;
+}
+
 SceneRest by_newton(const SceneCloth& cloth, const SceneRestOptions& options, const Deadline& deadline) {
     ClothProblem problem(make_energy(options.method, cloth.garment, cloth.fabrics, {}), cloth.garment, cloth.fabrics, cloth.body,
                          scene_contact(cloth));
@@ -48,14 +53,15 @@ SceneRest by_newton(const SceneCloth& cloth, const SceneRestOptions& options, co
     o.max_iterations = options.max_iterations;
     o.progress = [&](int, double) { return !deadline.passed(); };
     Cholesky factor;
-    SceneRest rest{cloth.x, 0, ""};
+    SceneRest rest;
+    rest.x = cloth.x;
     const SettleResult r = settle_constrained(problem, rest.x, o, [&](const SettleOptions& some) { return settle_cloth(problem, rest.x, factor, some); });
     rest.residual = r.residual;
     switch (r.end) {
     case SettleEnd::settled: break;
     case SettleEnd::iterations: rest.failure = "out of iterations"; break;
     case SettleEnd::stalled: rest.failure = "stalled"; break;
-    case SettleEnd::stopped: rest.failure = "out of time"; break;
+    case SettleEnd::stopped: fail_late(rest); break;
     }
     return rest;
 }
@@ -77,8 +83,11 @@ SceneRest by_motion(const SceneCloth& cloth, const SceneRestOptions& options, co
     o.max_steps = most_steps;
     o.progress = [&](int, double) { return !deadline.passed(); };
     const RestResult r = come_to_rest(*stepper, moving, cloth.body.points, o);
-    SceneRest rest{moving.x, r.residual, r.broken};
-    if (rest.failure.empty() && !r.rested) rest.failure = r.stopped ? "out of time" : "out of steps";
+    SceneRest rest{moving.x, r.residual, r.broken, false};
+    if (r.stopped)
+        fail_late(rest);
+    else if (rest.failure.empty() && !r.rested)
+        rest.failure = "out of steps";
     return rest;
 }
 

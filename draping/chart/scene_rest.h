@@ -19,6 +19,7 @@ struct SceneRest {
     Points x;
     double residual = 0;
     std::string failure; ///< why it is not at rest, a few words; empty: it is
+    bool out_of_time = false; ///< that is why
 };
 
 /// Brings a scene to rest as `toile drape` would with this method and the barrier: by Newton's steps, or by a motion that air slows.

@@ -92,7 +92,7 @@ private:
         words(left, 20, "start", scene_.scene.name, "font-size=\"15\" font-weight=\"bold\"");
         const std::string& quantity = scene_.scene.quantity;
         words(left, 36, "start",
-              scene_.scene.band ? quantity + ": " + scene_.answer_from : text("%s: %.6g by %s", quantity.c_str(), scene_.answer, scene_.answer_from.c_str()),
+              scene_.scene.band ? text("%s: %.3g to %.3g by %s", quantity.c_str(), scene_.scene.band->low, scene_.scene.band->high, scene_.answer_from.c_str()) : text("%s: %.6g by %s", quantity.c_str(), scene_.answer, scene_.answer_from.c_str()),
               "fill=\"#555555\"");
         for (int k = time_.low; k <= time_.high; ++k) {
             const double at = x(std::pow(10, k));
@@ -125,7 +125,7 @@ private:
         const Band& b = *scene_.scene.band;
         drawing_.body += text("<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%.1f\" fill=\"#c03030\" fill-opacity=\"0.12\"/>\n", left, y_of_value(b.high),
                               width - left - right, y_of_value(b.low) - y_of_value(b.high));
-        words(width - right - 4, y_of_value(b.high) + 14, "end", "measurements", "fill=\"#c03030\"");
+        words(width - right - 4, y_of_value(b.high) + 14, "end", "measured", "fill=\"#c03030\"");
         for (double v = values_.low; v < values_.high + value_step / 2; v += value_step) {
             line(left, y_of_value(v), width - right, y_of_value(v), "stroke=\"#e4e4e4\"");
             words(left - 6, y_of_value(v) + 4, "end", text("%.1f", v));

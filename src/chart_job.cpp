@@ -7,6 +7,7 @@
 #include "io/write_file.h"
 #include "sewing/blas.h"
 #include "src/file_name.h"
+#include "src/garment_scene.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -16,8 +17,9 @@ namespace toile {
 
 namespace {
 
-std::vector<Scene> scenes_asked(const std::vector<std::string>& names) {
-    const std::vector<Scene> all = chart_scenes();
+std::vector<Scene> scenes_asked(const std::vector<std::string>& names, const std::string& pattern) {
+    std::vector<Scene> all = chart_scenes();
+    if (!pattern.empty()) all.push_back(garment_scene(pattern));
     if (names.empty()) return all;
     std::vector<Scene> asked;
     std::string known;
@@ -51,7 +53,7 @@ ChartOutcome run_chart(const ChartJob& job) {
     const std::filesystem::path page(job.page);
     const std::string stem = (page.parent_path() / page.stem()).string();
     ChartOptions options = job.options;
-    options.scenes = scenes_asked(job.scenes);
+    options.scenes = scenes_asked(job.scenes, job.pattern);
     if (options.methods.empty()) options.methods = all_methods();
     check_writable(job.page);
     ChartOutcome outcome;

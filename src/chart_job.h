@@ -12,6 +12,7 @@ namespace toile {
 
 struct ChartJob {
     std::vector<std::string> scenes; ///< names, or what they begin with; empty: all
+    std::string pattern;             ///< file of a garment that is a scene too; empty: none
     ChartOptions options;            ///< but for the scenes; no methods: all
     std::string page;                ///< HTML file; beside it go name.csv, name.json and name-SCENE.svg
 };

@@ -77,6 +77,7 @@ void add_chart(CLI::App& app, Command& chosen) {
     const auto a = std::make_shared<ChartArguments>();
     add_page(command, a->job.page);
     command.add_option("--scene", a->job.scenes, "Scene, or what the names of several begin with; may be repeated (default: all)")->type_name("NAME");
+    command.add_option("--pattern", a->job.pattern, "Pattern of a garment that is a scene too, on the built-in form, under the name of the file")->type_name("FILE");
     add_methods(command, a->methods);
     command.add_flag("--quick", a->quick, "Three meshes instead of four, one step size instead of three, one run of each instead of five, given up after 0.5 s");
     add_duration(command, "max-seconds", a->max_seconds, 0.001, 1e6, "Time after which a run has failed (default 20 s; with --quick 0.5 s)");

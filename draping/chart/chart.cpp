@@ -67,8 +67,8 @@ std::optional<double> equilibrium_value(const Scene& scene, double edge) {
 }
 
 ChartScene answered(const Scene& scene, int meshes) {
-    if (scene.answer) return {scene, *scene.answer, "theory"};
-    if (scene.band) return {scene, (scene.band->low + scene.band->high) / 2, text("measurements, %.3g to %.3g", scene.band->low, scene.band->high)};
+    if (scene.answer) return {scene, *scene.answer, scene.answer_from};
+    if (scene.band) return {scene, (scene.band->low + scene.band->high) / 2, scene.answer_from};
     const double edge = scene.edges[std::min<std::size_t>(meshes, scene.edges.size()) - 1];
     const std::optional<double> a = equilibrium_value(scene, edge), b = equilibrium_value(scene, edge / 2);
     if (!a || !b) throw std::runtime_error("the scene '" + scene.name + "' has no answer: equilibrium does not come to rest on it");
@@ -91,7 +91,8 @@ bool run(const ChartScene& s, const SceneCloth& cloth, const ChartOptions& optio
     std::vector<double> cpu, wall;
     Points x;
     bool in_time = true;
-    for (int k = 0; k < options.repeats && p.failure.empty(); ++k) {
+    double spent = 0;
+    for (int k = 0; k < options.repeats && p.failure.empty() && spent < options.max_seconds; ++k) {
         set_threads(1);
         const Timed one = timed(cloth, how);
         set_threads(all);
@@ -99,6 +100,7 @@ bool run(const ChartScene& s, const SceneCloth& cloth, const ChartOptions& optio
         in_time = !one.rest.out_of_time;
         p.failure = one.rest.failure;
         cpu.push_back(one.cpu);
+        spent += one.wall;
         wall.push_back(p.failure.empty() ? timed(cloth, how).wall : one.wall);
     }
     p.value = s.scene.measure(cloth, x);

@@ -18,7 +18,7 @@ struct ChartOptions {
     std::vector<Method> methods;
     int meshes = 4;          ///< of each scene, from the coarsest on
     int steps = 3;           ///< of methods whose accuracy at rest depends on them, from the longest on
-    int repeats = 5;         ///< times are medians of as many runs
+    int repeats = 5;         ///< times are medians of as many runs, or of fewer that together take max_seconds
     double max_seconds = 20; ///< of wall time, of one run; what takes longer has failed, is run once, and on no finer mesh
     std::function<void(const std::string& what)> progress; ///< called before every run
 };
@@ -40,7 +40,7 @@ struct ChartPoint {
 struct ChartScene {
     Scene scene;
     double answer = 0;       ///< of a band the middle
-    std::string answer_from; ///< "theory", which meshes, or "measurements"
+    std::string answer_from; ///< that of the scene, or which meshes
 };
 
 struct Chart {

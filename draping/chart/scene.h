@@ -15,6 +15,9 @@
 
 namespace toile {
 
+struct SceneRestOptions;
+struct SceneRest;
+
 /// A scene at one mesh size, about to be let go.
 struct SceneCloth {
     Garment garment;
@@ -24,6 +27,8 @@ struct SceneCloth {
     Loads loads;
     TriMesh body;                ///< what it lies on; if it touches that at the start, it is at rest there but for the loads
     double friction = 0;         ///< on the body
+    /// How it comes to rest from x, if not as rest_of() has it: a garment has a drape of its own.
+    std::function<SceneRest(const Points& x, const SceneRestOptions& options)> rest;
 };
 
 /// Cloth of 0.15 kg/m2 alike in all directions, without a Poisson effect, of so much N/m and N m; shear is half the former.
@@ -39,6 +44,7 @@ struct Scene {
     std::string quantity; ///< what the number is: "drop over reach of the tip"
     /// The number that theory gives; none, and no band: what the equilibria of the two finest meshes tend to, by Richardson with order 2.
     std::optional<double> answer;
+    std::string answer_from = "theory"; ///< of the answer or the band
     std::optional<Band> band; ///< instead of an answer: all in it is as near as can be told
     double scale = 1; ///< errors are shares of this
     std::vector<double> edges; ///< m, of the meshes to chart, each half of the one before

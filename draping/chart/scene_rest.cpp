@@ -94,6 +94,7 @@ SceneRest by_motion(const SceneCloth& cloth, const SceneRestOptions& options, co
 } // namespace
 
 SceneRest rest_of(const SceneCloth& cloth, const SceneRestOptions& options) {
+    if (cloth.rest) return cloth.rest(cloth.x, options);
     const Deadline deadline(options.max_seconds);
     return settles(options.method) ? by_newton(cloth, options, deadline) : by_motion(cloth, options, deadline);
 }

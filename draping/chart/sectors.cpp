@@ -144,6 +144,7 @@ Scene cusick_disc() {
     s.quantity = "drape coefficient";
     const Fabric& fabric = fabric_preset("poplin");
     s.band = cusick_band(fabric);
+    s.answer_from = "Cusick's fit to measurements";
     s.edges = halved(0.024, 4);
     s.make = [fabric](double edge) {
         Sector whole = sewn_sector(disc_inner, disc, 2 * pi, edge);

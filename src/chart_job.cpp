@@ -6,11 +6,10 @@
 #include "io/chart_svg.h"
 #include "io/write_file.h"
 #include "sewing/blas.h"
-#include "src/file_name.h"
 #include "src/garment_scene.h"
+#include "src/page_files.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <fstream>
 
 namespace toile {
@@ -50,8 +49,6 @@ std::string processor() {
 } // namespace
 
 ChartOutcome run_chart(const ChartJob& job) {
-    const std::filesystem::path page(job.page);
-    const std::string stem = (page.parent_path() / page.stem()).string();
     ChartOptions options = job.options;
     options.scenes = scenes_asked(job.scenes, job.pattern);
     if (options.methods.empty()) options.methods = all_methods();
@@ -59,15 +56,10 @@ ChartOutcome run_chart(const ChartJob& job) {
     ChartOutcome outcome;
     outcome.chart = make_chart(options);
     const ChartMachine machine{processor(), threads(), "toile " TOILE_VERSION, blas_name()};
-    const auto write = [&](const std::string& path, const std::string& bytes) {
-        write_file(path, bytes);
-        outcome.written.push_back(path);
-    };
-    write(job.page, chart_page(outcome.chart, machine));
-    write(stem + ".csv", chart_csv(outcome.chart));
-    outcome.json = chart_json(outcome.chart, machine);
-    write(stem + ".json", outcome.json);
-    for (const ChartScene& s : outcome.chart.scenes) write(stem + "-" + file_name(s.scene.name) + ".svg", chart_svg(outcome.chart, s));
+    PageFiles files{chart_page(outcome.chart, machine), chart_csv(outcome.chart), chart_json(outcome.chart, machine), {}};
+    for (const ChartScene& s : outcome.chart.scenes) files.pictures.push_back({s.scene.name, chart_svg(outcome.chart, s)});
+    outcome.written = write_page(job.page, files);
+    outcome.json = std::move(files.json);
     return outcome;
 }
 

@@ -9,7 +9,6 @@
 #include "src/drape_input.h"
 #include "src/pipeline.h"
 
-#include <chrono>
 #include <filesystem>
 #include <memory>
 #include <numeric>
@@ -72,10 +71,10 @@ private:
         options.tolerance = how.tolerance;
         options.max_iterations = how.max_iterations;
         options.from = x;
-        const auto start = std::chrono::steady_clock::now();
+        const double end = processor_seconds() + how.max_seconds;
         bool late = false;
         options.progress = [&](const DrapeProgress&) {
-            late = std::chrono::steady_clock::now() - start > std::chrono::duration<double>(how.max_seconds);
+            late = processor_seconds() > end;
             return !late;
         };
         const DrapeResult r = drape(input.staging, avatar_, input.fabrics, options);

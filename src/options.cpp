@@ -21,21 +21,6 @@ void add_form_measures(CLI::App& command, FormMeasures& form) {
     add_length(command, "hip", form.hip, 0.6, 1.6, "Its hip girth");
 }
 
-void add_page(CLI::App& command, std::string& page) {
-    command.add_option("-o,--output", page, "Page to write, .html; its data and pictures go beside it as .csv, .json and .svg")
-        ->type_name("FILE")
-        ->required()
-        ->check([](const std::string& path) { return path.ends_with(".html") ? std::string() : path + " does not end in .html"; });
-}
-
-void add_methods(CLI::App& command, std::vector<std::string>& methods) {
-    std::vector<std::string> names;
-    for (const Method m : all_methods()) names.push_back(to_string(m));
-    command.add_option("--method", methods, "Method; may be repeated (default: all)")
-        ->check(CLI::IsMember(names).description(""))
-        ->type_name("NAME");
-}
-
 void add_unit_and_up(CLI::App& command, WriteOptions& write) {
     static const std::map<std::string, double> units{{"m", 1}, {"cm", 0.01}, {"mm", 0.001}};
     command

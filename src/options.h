@@ -27,12 +27,6 @@ void add_fabric(CLI::App& command, std::string& fabric, const std::string& help)
 /// --threads, --quiet and --json of a command that writes a report.
 void add_run_options(CLI::App& command, int& threads, bool& quiet, bool& json);
 
-/// -o of a command that writes a page of HTML, with data and pictures beside it.
-void add_page(CLI::App& command, std::string& page);
-
-/// --method, one or more by name.
-void add_methods(CLI::App& command, std::vector<std::string>& methods);
-
 /// Throws CommandLineError for a garment file whose name does not end as one.
 void refuse_formats(const std::vector<std::string>& garments);
 

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <ctime>
 #include <stdexcept>
 
 namespace toile {
@@ -38,11 +37,11 @@ struct Timed {
 };
 
 Timed timed(const SceneCloth& cloth, const SceneRestOptions& options) {
-    const std::clock_t cpu = std::clock();
+    const double cpu = processor_seconds();
     const auto wall = std::chrono::steady_clock::now();
     Timed t{rest_of(cloth, options)};
     t.wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - wall).count();
-    t.cpu = double(std::clock() - cpu) / CLOCKS_PER_SEC;
+    t.cpu = processor_seconds() - cpu;
     return t;
 }
 
@@ -100,7 +99,7 @@ bool run(const ChartScene& s, const SceneCloth& cloth, const ChartOptions& optio
         in_time = !one.rest.out_of_time;
         p.failure = one.rest.failure;
         cpu.push_back(one.cpu);
-        spent += one.wall;
+        spent += one.cpu;
         wall.push_back(p.failure.empty() ? timed(cloth, how).wall : one.wall);
     }
     p.value = s.scene.measure(cloth, x);

@@ -19,7 +19,7 @@ struct ChartOptions {
     int meshes = 4;          ///< of each scene, from the coarsest on
     int steps = 3;           ///< of methods whose accuracy at rest depends on them, from the longest on
     int repeats = 5;         ///< times are medians of as many runs, or of fewer that together take max_seconds
-    double max_seconds = 20; ///< of wall time, of one run; what takes longer has failed, is run once, and on no finer mesh
+    double max_seconds = 20; ///< of processor time, of one run; what takes longer has failed, is run once, and on no finer mesh
     std::function<void(const std::string& what)> progress; ///< called before every run
 };
 

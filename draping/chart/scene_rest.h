@@ -11,7 +11,7 @@ struct SceneRestOptions {
     Method method = Method::equilibrium;
     double time_step = 0;    ///< s, of a method that moves; 0: its own
     double tolerance = 1e-3; ///< residual at rest, as NodeProblem::residual() measures it
-    double max_seconds = 20; ///< of wall time
+    double max_seconds = 20; ///< of processor time
     int max_iterations = 3000; ///< of Newton's steps
 };
 
@@ -24,6 +24,9 @@ struct SceneRest {
 
 /// Brings a scene to rest as `toile drape` would with this method and the barrier: by Newton's steps, or by a motion that air slows.
 SceneRest rest_of(const SceneCloth& cloth, const SceneRestOptions& options);
+
+/// That the process has used so far, on all threads.
+double processor_seconds();
 
 /// Of cloth with the body of its scene and not with itself, as hard as in a drape.
 ContactOptions scene_contact(const SceneCloth& cloth);

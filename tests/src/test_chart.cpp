@@ -39,12 +39,41 @@ TEST_CASE("chart writes a page with its data and pictures") {
     CHECK_THAT(picture, Catch::Matchers::StartsWith("<svg") && Contains("springs-implicit, edges of 30 mm") && Contains("1 %"));
 }
 
+TEST_CASE("chart draws what a scene with a band measures") {
+    const TempFolder folder;
+    const Run r = run_toile({"chart", "--quick", "--scene", "cusick", "--method", "springs-implicit", "-o", folder / "chart.html"});
+    INFO(r.err);
+    REQUIRE(r.code == exit_made);
+    const auto json = nlohmann::json::parse(read_file(folder / "chart.json", 1 << 20));
+    CHECK(json["scenes"][0]["band"].size() == 2);
+    CHECK_THAT(read_file(folder / "chart-cusick-disc.svg", 1 << 20), Contains("drape coefficient: 0.27 to 0.521 by Cusick") && !Contains("1 %"));
+}
+
+TEST_CASE("chart holds a garment against its own finest equilibrium") {
+    const TempFolder folder;
+    const Run r = run_toile({"chart", "--quick", "--max-seconds", "60s", "--pattern", TOILE_SOURCE_DIR "/examples/tee.json", "--scene", "tee", "--method",
+                             "equilibrium", "-o", folder / "chart.html"});
+    INFO(r.err);
+    REQUIRE(r.code == exit_made);
+    const auto points = nlohmann::json::parse(read_file(folder / "chart.json", 1 << 20))["points"];
+    REQUIRE(points.size() == 3);
+    double before = 0.2; // 20 mm
+    for (const auto& p : points) {
+        CHECK(p["status"] == "converged");
+        CHECK(p["error"].get<double>() > 0.001); // it is not held against itself
+        CHECK(p["error"].get<double>() < before);
+        before = p["error"].get<double>();
+    }
+    CHECK(before < 0.05);
+}
+
 TEST_CASE("chart refuses what it does not know") {
     const TempFolder folder;
     const Run scene = run_toile({"chart", "--scene", "hat", "-o", folder / "chart.html"});
     CHECK(scene.code == exit_refused);
     CHECK_THAT(scene.err, Contains("no scene begins with 'hat', the scenes are 'cantilever, aligned, 1e04'"));
     CHECK(!std::filesystem::exists(folder / "chart.html"));
+    CHECK(run_toile({"chart", "--pattern", folder / "none.json", "-o", folder / "chart.html"}).code == exit_refused);
     CHECK(run_toile({"chart", "--method", "rubber", "-o", folder / "chart.html"}).code == exit_command_line);
     CHECK(run_toile({"chart", "-o", folder / "chart.txt"}).code == exit_command_line);
     CHECK(run_toile({"chart", "--quick", "-o", folder / "none/chart.html"}).code == exit_refused);

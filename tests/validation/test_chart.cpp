@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace toile;
@@ -91,6 +92,75 @@ TEST_CASE("chart: a solver is asked how far it is from the end") {
         REQUIRE(p.error_solver);
         CHECK(*p.error_solver < 1e-4 * std::max(p.error, 1e-2));
     }
+}
+
+TEST_CASE("chart: models with a shear stiffness of their own have it in a picture frame") {
+    ChartOptions o = quick({"picture frame"}, {Method::equilibrium, Method::triangles, Method::projective, Method::inextensible, Method::nonconforming});
+    o.meshes = 2;
+    const Chart chart = make_chart(o);
+    CHECK(chart.scenes[0].answer == Approx(0.5 * 3.14159265358979 / 180));
+    for (const ChartPoint& p : chart.points) {
+        INFO(to_string(p.method) << ", " << p.edge_length);
+        CHECK(p.failure == "");
+        if (p.method == Method::nonconforming)
+            CHECK(p.error > 0.9); // keeps all lengths
+        else
+            CHECK(p.error < 1e-3);
+    }
+}
+
+TEST_CASE("chart: a strip over a cylinder slides until its tensions are in the ratio of the capstan") {
+    ChartOptions o = quick({"capstan"}, {Method::equilibrium, Method::springs_implicit, Method::triangles});
+    o.meshes = 2;
+    for (const ChartPoint& p : make_chart(o).points) {
+        INFO(to_string(p.method) << ", " << p.edge_length);
+        CHECK(p.failure == "");
+        CHECK(p.error < 0.02);
+    }
+    const Scene s = scene("capstan");
+    SceneCloth smooth = s.make(s.edges[0]);
+    CHECK(s.measure(smooth, smooth.x) == Approx(1.1 * std::exp(0.3 * 3.14159265358979)).epsilon(1e-6));
+    smooth.friction = 0;
+    CHECK(s.measure(smooth, rest_of(smooth, {}).x) == Approx(1).epsilon(2e-3)); // bending takes the rest
+}
+
+TEST_CASE("chart: Cusick's disc drapes as much as measured cloth, and less when it is stiff") {
+    const Scene s = scene("cusick disc");
+    REQUIRE(s.band);
+    CHECK(s.band->low == Approx(0.270).margin(1e-3)); // the fit by hand, of bending lengths of 1.87 and 1.64 cm
+    CHECK(s.band->high == Approx(0.521).margin(1e-3));
+    SceneCloth cloth = s.make(s.edges[0]);
+    CHECK(s.measure(cloth, cloth.x) == Approx(1));
+    Points narrow = cloth.x; // what hangs straight down from the plate has no shadow of its own
+    for (Vec3& p : narrow)
+        if (const double r = std::hypot(p.x(), p.z()); r > 0.09) p *= 0.09 / r;
+    CHECK(s.measure(cloth, narrow) == Approx(0).margin(2e-3));
+    const SceneRest rest = rest_of(cloth, {});
+    CHECK(rest.failure == "");
+    const double coefficient = s.measure(cloth, rest.x);
+    CHECK(coefficient > s.band->low - 0.05);
+    CHECK(coefficient < s.band->high + 0.05);
+    for (double* bend : {&cloth.fabrics[0].bend_warp, &cloth.fabrics[0].bend_weft, &cloth.fabrics[0].bend_twist}) *bend *= 100;
+    CHECK(s.measure(cloth, rest_of(cloth, {}).x) > 0.9);
+}
+
+TEST_CASE("chart: all that lies in a band is as near as can be told") {
+    ChartOptions o = quick({"cusick disc"}, {Method::springs_implicit, Method::projective});
+    o.meshes = 1;
+    for (const ChartPoint& p : make_chart(o).points) {
+        REQUIRE(p.failure == "");
+        const Band band = *o.scenes[0].band;
+        CHECK(p.error == Approx(std::max({0.0, band.low - p.value, p.value - band.high})));
+    }
+}
+
+TEST_CASE("chart: what is out of time on a mesh is not run on finer ones") {
+    ChartOptions o = quick({"catenary"}, {Method::springs_explicit, Method::springs_implicit});
+    o.max_seconds = 0.02;
+    int slow = 0, fast = 0;
+    for (const ChartPoint& p : make_chart(o).points) ++(p.method == Method::springs_explicit ? slow : fast);
+    CHECK(slow == 1);
+    CHECK(fast > 1);
 }
 
 TEST_CASE("chart: what takes too long has failed and is on no front") {

@@ -91,22 +91,22 @@ private:
     void axes() {
         words(left, 20, "start", scene_.scene.name, "font-size=\"15\" font-weight=\"bold\"");
         const std::string& quantity = scene_.scene.quantity;
-        words(left, 36, "start",
-              scene_.scene.band ? text("%s: %.3g to %.3g by %s", quantity.c_str(), scene_.scene.band->low, scene_.scene.band->high, scene_.answer_from.c_str()) : text("%s: %.6g by %s", quantity.c_str(), scene_.answer, scene_.answer_from.c_str()),
-              "fill=\"#555555\"");
+        const std::optional<Band>& b = scene_.scene.band;
+        const std::string answer = b ? text("%.3g to %.3g", b->low, b->high) : text("%.6g", scene_.answer);
+        words(left, 36, "start", quantity + ": " + answer + " by " + scene_.answer_from, "fill=\"#555555\"");
         for (int k = time_.low; k <= time_.high; ++k) {
             const double at = x(std::pow(10, k));
             line(at, top, at, height - bottom, "stroke=\"#e4e4e4\"");
             words(at, height - bottom + 16, "middle", text("%g s", std::pow(10, k)));
         }
-        if (scene_.scene.band)
+        if (b)
             band();
         else
             errors();
         line(left, height - bottom, width - right, height - bottom, "stroke=\"#333333\"");
         line(left, top, left, height - bottom, "stroke=\"#333333\"");
         words((left + width - right) / 2, height - 14, "middle", "processor time on one thread");
-        drawing_.words_upward(16, (top + height - bottom) / 2, scene_.scene.band ? quantity : "error");
+        drawing_.words_upward(16, (top + height - bottom) / 2, b ? quantity : "error");
     }
 
     void errors() {

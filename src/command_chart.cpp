@@ -13,7 +13,7 @@ namespace toile {
 namespace {
 
 constexpr int quick_meshes = 3;
-constexpr double quick_seconds = 0.5;
+constexpr double quick_seconds = 0.3;
 
 struct ChartArguments {
     PageArguments page;
@@ -60,10 +60,10 @@ int chart_command(const ChartArguments& a, const Console& console) {
 void add_chart(CLI::App& app, Command& chosen) {
     CLI::App& command = *app.add_subcommand("chart", "Chart error against time, by scenes with known answers, methods and mesh sizes");
     const auto a = std::make_shared<ChartArguments>();
-    add_page_options(command, a->page, "Three meshes instead of four, one step size instead of three, one run of each instead of five, given up after 0.5 s");
+    add_page_options(command, a->page, "Three meshes instead of four, one step size instead of three, one run of each instead of five, given up after 0.3 s");
     command.add_option("--scene", a->scenes, "Scene, or what the names of several begin with; may be repeated (default: all)")->type_name("NAME");
     command.add_option("--pattern", a->pattern, "Pattern of a garment that is a scene too, on the built-in form, under the name of the file")->type_name("FILE");
-    add_duration(command, "max-seconds", a->max_seconds, 0.001, 1e6, "Processor time after which a run has failed (default 20 s; with --quick 0.5 s)");
+    add_duration(command, "max-seconds", a->max_seconds, 0.001, 1e6, "Processor time after which a run has failed (default 20 s; with --quick 0.3 s)");
     command.callback([a, &chosen] { chosen = [a](const Console& console) { return chart_command(*a, console); }; });
 }
 

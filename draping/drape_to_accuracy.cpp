@@ -92,8 +92,8 @@ Staging mesh_for(const AccuracyRun& run, double edge_length) {
 }
 
 void decide_graded(AccuracyRun& run, double edge_length, double most, int vertices) {
-    double area = 0;
-    for (const Mat2& edges : run.result.garment.rest.edges) area += rest_area(edges);
+    const std::vector<double> areas = rest_areas(run.result.garment);
+    const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
     const double uniform = area / (std::sqrt(3.0) / 2 * edge_length * edge_length);
     run.decide(text("edges of %.3g mm on the %.0f %% of the cloth that is curved most, and up to %.3g mm elsewhere", 1e3 * edge_length,
                     100 * curved_most, 1e3 * most),

@@ -9,6 +9,7 @@ namespace toile {
 
 inline constexpr double first_accuracy_edge = 0.04; ///< m, of the first mesh: that of the coarsest level of a drape
 
+/// By place of the cloth of a panel at rest, (weft, warp).
 using PlaceFactor = std::function<double(int panel, const Vec2& at)>;
 
 struct AccuracyOptions {

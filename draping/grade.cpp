@@ -11,14 +11,6 @@ namespace {
 
 constexpr double steepest = 0.5; // m of edge length per m of cloth
 
-/// A third of the area of the triangles round a node, m2.
-std::vector<double> node_areas(const Garment& g) {
-    std::vector<double> area(g.node_count, 0);
-    for (int t = 0; t < int(g.triangles.size()); ++t)
-        for (const int i : g.nodes(t)) area[i] += rest_area(g.rest.edges[t]) / 3;
-    return area;
-}
-
 /// The angle by which an edge of two triangles is bent beyond rest; the sign does not matter here.
 double bent_by(const Garment& g, const Points& x, int e) {
     std::array<Vec3, 2> normal;

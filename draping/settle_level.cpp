@@ -79,7 +79,7 @@ struct TightWatch {
 
 void soften(const DrapeRun& run, ClothProblem& problem, Loads& loads, double softness) {
     problem.sheet()->softness = softness;
-    loads.elastics = elastic_segments(run.staging, run.garment);
+    loads.elastics = elastic_segments(run.staging.elastics, run.garment);
     for (ElasticSegment& s : loads.elastics) s.stiffness *= softness;
 }
 
@@ -111,7 +111,7 @@ void add_fixtures(DrapeRun& run, ClothProblem& problem) {
         problem.pin(node);
         run.x[node] = place;
     }
-    problem.elastics = elastic_segments(run.staging, run.garment);
+    problem.elastics = elastic_segments(run.staging.elastics, run.garment);
     problem.hooks = hooks_on(run, run.garment, run.held, problem);
     for (const Stitch& s : run.garment.stitches)
         problem.stitches.push_back({s.a, s.b, s.r, inner_stitch_stiffness, 1e3});

@@ -110,9 +110,9 @@ std::vector<std::pair<int, Vec3>> pinned_places(const Staging& staging, int leve
     return places;
 }
 
-std::vector<ElasticSegment> elastic_segments(const Staging& staging, const Garment& garment) {
+std::vector<ElasticSegment> elastic_segments(const std::vector<Elastic>& elastics, const Garment& garment) {
     std::vector<ElasticSegment> segments;
-    for (const Elastic& elastic : staging.elastics) {
+    for (const Elastic& elastic : elastics) {
         const std::vector<int> line = vertices_along(garment, elastic.span);
         for (std::size_t k = 0; k + 1 < line.size(); ++k) {
             const int a = garment.node_of_vertex[line[k]], b = garment.node_of_vertex[line[k + 1]];

@@ -35,6 +35,6 @@ Staging stage(Garment garment, Points placed, std::vector<Pin> pins, std::vector
 std::vector<std::pair<int, Vec3>> pinned_places(const Staging& staging, int level, const Garment& garment);
 
 /// The bands of a garment of any level, segment by segment.
-std::vector<ElasticSegment> elastic_segments(const Staging& staging, const Garment& garment);
+std::vector<ElasticSegment> elastic_segments(const std::vector<Elastic>& elastics, const Garment& garment);
 
 } // namespace toile

@@ -8,6 +8,7 @@
 #include "io/read_placement.h"
 #include "io/read_rest_mesh.h"
 #include "io/write_file.h"
+#include "patterns/shrink.h"
 
 #include <algorithm>
 #include <climits>
@@ -123,15 +124,23 @@ private:
     }
 
     void read_panel(const JsonView& v, Panel& panel) {
-        v.expect_keys({"fabric", "grain", "layer", "holes", "lines"});
+        v.expect_keys({"fabric", "grain", "shrink", "layer", "holes", "lines"});
         if (v.has("fabric")) panel.fabric = read_fabric(v.at("fabric"));
         if (v.has("grain")) panel.grain = v.at("grain").number(-360, 360) * EIGEN_PI / 180;
+        if (v.has("shrink")) panel.shrink = read_shrink(v.at("shrink"));
         if (v.has("layer")) panel.layer = v.at("layer").integer(-max_layer, max_layer);
         each(v, "holes", [&](const JsonView& hole) {
             hole.expect_keys({"vertices", "edges"});
             panel.holes.push_back(read_chain(hole, true));
         });
         each(v, "lines", [&](const JsonView& line) { panel.lines.push_back(read_line(line)); });
+    }
+
+    Vec2 read_shrink(const JsonView& v) {
+        v.expect_object();
+        v.expect_keys({"warp", "weft"});
+        const auto share = [&](const char* along) { return v.has(along) ? v.at(along).number(-most_shrink, most_shrink) : 0; };
+        return {share("weft"), share("warp")};
     }
 
     /// The edges given, or straight ones from vertex to vertex.
@@ -207,8 +216,8 @@ private:
     void read_elastics(const JsonView& v) {
         v.expect_keys({"panel", "edge", "label", "from", "to", "ratio", "stiffness"});
         Elastic elastic;
-        const JsonView ratio = v.at("ratio");
-        elastic.ratio = ratio.number(0.05, 1);
+        elastic.item = items_++;
+        elastic.ratio = v.at("ratio").number(least_ratio, 1);
         if (v.has("stiffness")) elastic.stiffness = v.at("stiffness").number(1e-3, 1e6);
         for (const EdgeSpan& span : read_spans(v)) {
             elastic.span = span;
@@ -264,6 +273,7 @@ private:
     Pattern& pattern_;
     EdgeConventions edges_;
     std::size_t named_ = 0;
+    int items_ = 0; ///< elastics read
 };
 
 void read_text_into(const std::string& text, const std::string& name, const fs::path& folder, Pattern& pattern) {

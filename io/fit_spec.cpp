@@ -44,7 +44,7 @@ Vec2 direction_in(const JsonView& v) {
     return d.normalized();
 }
 
-std::vector<OutlineMove> move_in(const JsonView& v, const Pattern& pattern) {
+std::vector<OutlineMove> outline_moves_in(const JsonView& v, const Pattern& pattern) {
     if (v.has("seam")) return move_seam(pattern, v.at("seam").integer(0, int(pattern.seams.size()) - 1));
     const int panel = panel_in(v.at("panel"), pattern);
     if (v.has("lengthen")) return lengthen_edge(pattern, panel, edge_in(v.at("lengthen"), pattern, panel));
@@ -55,38 +55,114 @@ std::vector<OutlineMove> move_in(const JsonView& v, const Pattern& pattern) {
     return {{{panel, edge_in(v.at("edge"), pattern, panel), v.at("control").integer(1, 2)}, direction}};
 }
 
-/// One of the forms, times "by".
-std::vector<OutlineMove> moves_in(const JsonView& v, const Pattern& pattern) {
-    std::vector<OutlineMove> moves;
+/// The edges of a label, of one panel where that is named, or an edge of a panel.
+std::vector<EdgeSpan> spans_in(const JsonView& v, const Pattern& pattern) {
+    const JsonView where = v.at("elastic");
+    if (!where.value().is_string()) {
+        const int panel = panel_in(v.at("panel"), pattern);
+        return {{panel, edge_in(where, pattern, panel)}};
+    }
+    const int only = v.has("panel") ? panel_in(v.at("panel"), pattern) : -1;
+    std::vector<EdgeSpan> spans;
+    for (int p = 0; p < int(pattern.panels.size()); ++p)
+        for (int e = 0; e < int(pattern.panels[p].outline.size()); ++e)
+            if ((only < 0 || only == p) && pattern.panels[p].outline[e].label == where.string()) spans.push_back({p, e});
+    if (spans.empty()) where.fail("the label of an edge");
+    return spans;
+}
+
+std::vector<int> elastics_on(const std::vector<EdgeSpan>& spans, const Pattern& pattern) {
+    std::vector<int> found;
+    for (int k = 0; k < int(pattern.elastics.size()); ++k)
+        for (const EdgeSpan& s : spans)
+            if (s.panel == pattern.elastics[k].span.panel && s.edge == pattern.elastics[k].span.edge) found.push_back(k);
+    return found;
+}
+
+/// Those that are there, or with a stiffness new ones, as long as the cloth, where there are none.
+std::vector<int> elastics_in(const JsonView& v, Pattern& pattern) {
+    const std::vector<EdgeSpan> spans = spans_in(v, pattern);
+    const std::vector<int> there = elastics_on(spans, pattern);
+    if (!v.has("stiffness")) {
+        if (there.empty()) v.at("elastic").fail("where the companion file has an elastic; with a \"stiffness\" one is put in");
+        return there;
+    }
+    if (!there.empty()) v.at("stiffness").fail("left out where there is an elastic already");
+    for (const EdgeSpan& span : spans) pattern.elastics.push_back({span, 1, v.at("stiffness").number(1e-3, 1e6)});
+    return elastics_on(spans, pattern);
+}
+
+Vec2 shrink_in(const JsonView& v) {
+    const std::string along = v.string();
+    if (along == "warp") return {0, 1};
+    if (along == "weft") return {1, 0};
+    if (along == "both") return {1, 1};
+    v.fail("\"warp\", \"weft\" or \"both\"");
+}
+
+/// One of the forms.
+Alteration form_in(const JsonView& v, Pattern& pattern, bool share) {
+    Alteration one;
+    if (v.has("elastic")) {
+        const std::vector<int> elastics = elastics_in(v, pattern);
+        if (!share)
+            one.elastics = lengthen_elastics(pattern, elastics);
+        else
+            for (const int e : elastics) one.elastics.push_back({e, 1});
+    } else if (v.has("shrink")) {
+        if (!share) throw InputError(v.place() + ": cloth is shrunk by a share of its length; the alteration needs \"unit\": \"percent\"");
+        one.shrinks = {{panel_in(v.at("panel"), pattern), shrink_in(v.at("shrink"))}};
+    } else if (v.has("ease")) {
+        if (share) throw InputError(v.place() + ": a seam is eased by mm; \"unit\": \"percent\" is for \"elastic\" and \"shrink\"");
+        one.eases = {{v.at("ease").integer(0, int(pattern.seams.size()) - 1), 1}};
+    } else {
+        if (share) throw InputError(v.place() + ": outlines move by mm; \"unit\": \"percent\" is for \"elastic\" and \"shrink\"");
+        one.moves = outline_moves_in(v, pattern);
+    }
+    return one;
+}
+
+/// Adds one of the forms, times "by".
+void add_form(const JsonView& v, Pattern& pattern, Alteration& a) {
+    Alteration one;
     try {
-        moves = move_in(v, pattern);
-        altered(pattern, {{"", moves, -1, 1}}, Eigen::VectorXd::Zero(1)); // controls that do not exist
+        one = form_in(v, pattern, a.share);
+        altered(pattern, {one}, Eigen::VectorXd::Zero(1)); // controls that do not exist
     } catch (const std::invalid_argument& error) {
         throw InputError(v.place() + ": " + error.what());
     }
     const double by = v.has("by") ? v.at("by").number(-100, 100) : 1;
-    for (OutlineMove& m : moves) m.step *= by;
-    return moves;
+    for (const OutlineMove& m : one.moves) a.moves.push_back({m.point, by * m.step});
+    for (const ElasticMove& m : one.elastics) a.elastics.push_back({m.elastic, by * m.ratio});
+    for (const EaseMove& m : one.eases) a.eases.push_back({m.seam, by * m.length});
+    for (const ShrinkMove& m : one.shrinks) a.shrinks.push_back({m.panel, by * m.share});
 }
 
-Alteration alteration_in(const JsonView& v, const Pattern& pattern) {
-    v.expect_keys({"name", "low", "high", "start", "moves", "seam", "panel", "lengthen", "edge_outward", "dart", "vertex", "edge",
-                   "control", "direction", "by"});
+double amount_in(const JsonView& v, const Alteration& a) { return a.share ? percent * v.number(-100, 100) : length_in(v); }
+
+Alteration alteration_in(const JsonView& v, Pattern& pattern) {
+    v.expect_keys({"name", "low", "high", "start", "unit", "moves", "seam", "panel", "lengthen", "edge_outward", "dart", "vertex", "edge",
+                   "control", "direction", "elastic", "stiffness", "shrink", "ease", "by"});
     Alteration a;
     a.name = name_in(v.at("name"));
-    a.low = length_in(v.at("low"));
-    a.high = length_in(v.at("high"));
+    if (v.has("unit")) {
+        const std::string unit = v.at("unit").string();
+        if (unit != "mm" && unit != "percent") v.at("unit").fail("\"mm\" or \"percent\"");
+        a.share = unit == "percent";
+    }
+    a.low = amount_in(v.at("low"), a);
+    a.high = amount_in(v.at("high"), a);
     if (!v.has("moves")) {
-        a.moves = moves_in(v, pattern);
+        add_form(v, pattern, a);
         return a;
     }
     const JsonView moves = v.at("moves");
     moves.expect_array(1, most_members);
     for (std::size_t k = 0; k < moves.value().size(); ++k) {
         const JsonView one = moves.at(k, "move");
-        one.expect_keys({"seam", "panel", "lengthen", "edge_outward", "dart", "vertex", "edge", "control", "direction", "by"});
-        const auto more = moves_in(one, pattern);
-        a.moves.insert(a.moves.end(), more.begin(), more.end());
+        one.expect_keys({"seam", "panel", "lengthen", "edge_outward", "dart", "vertex", "edge", "control", "direction", "elastic", "stiffness",
+                         "shrink", "ease", "by"});
+        add_form(one, pattern, a);
     }
     return a;
 }
@@ -172,6 +248,7 @@ FitSpec read_fit_spec(const std::string& path, const Pattern& pattern) {
     root.expect_object();
     root.expect_keys({"alterations", "goals", "optimiser", "max_evaluations", "stay"});
     FitSpec spec;
+    Pattern with = pattern;
     const JsonView alterations = root.at("alterations"), goals = root.at("goals");
     alterations.expect_array(1, most_alterations);
     goals.expect_array(1, most_goals);
@@ -179,9 +256,10 @@ FitSpec read_fit_spec(const std::string& path, const Pattern& pattern) {
     for (std::size_t k = 0; k < alterations.value().size(); ++k) {
         const JsonView one = alterations.at(k, "alteration");
         one.expect_object();
-        spec.alterations.push_back(alteration_in(one, pattern));
-        if (one.has("start")) spec.start[Eigen::Index(k)] = length_in(one.at("start"));
+        spec.alterations.push_back(alteration_in(one, with));
+        if (one.has("start")) spec.start[Eigen::Index(k)] = amount_in(one.at("start"), spec.alterations.back());
     }
+    spec.put_in.assign(with.elastics.begin() + std::ptrdiff_t(pattern.elastics.size()), with.elastics.end());
     for (std::size_t k = 0; k < goals.value().size(); ++k) {
         const JsonView one = goals.at(k, "goal");
         one.expect_object();

@@ -28,13 +28,14 @@ struct GoalSpec {
 
 struct FitSpec {
     std::vector<Alteration> alterations;
-    Eigen::VectorXd start; ///< m
+    std::vector<Elastic> put_in; ///< that alterations name after those of the pattern: as long as the cloth as drawn
+    Eigen::VectorXd start;       ///< amounts
     std::vector<GoalSpec> goals;
     FitOptions options; ///< optimiser, max_evaluations, stay
 };
 
-/// Reads lengths in millimetres and stretch in percent. Shape files are relative to the spec's folder. Throws InputError with
-/// the place in the file: not JSON, unknown keys, panels, vertices, edges or seams that the pattern does not have, numbers out
+/// Reads lengths in millimetres, stretch and shares in percent. Shape files are relative to the spec's folder. Throws InputError with
+/// the place in the file: not JSON, unknown keys, panels, vertices, edges, seams or elastics that the pattern does not have, numbers out
 /// of range, no alteration or no goal.
 FitSpec read_fit_spec(const std::string& path, const Pattern& pattern);
 

@@ -395,6 +395,8 @@ private:
         std::vector<std::string> lines;
         if (!panel.fabric.empty()) lines.push_back(panel.fabric);
         if (panel.layer != 0) lines.push_back("layer " + std::to_string(panel.layer));
+        if (panel.shrink.y() != 0) lines.push_back(text("steamed, warp %+.3g %%", -100 * panel.shrink.y()));
+        if (panel.shrink.x() != 0) lines.push_back(text("steamed, weft %+.3g %%", -100 * panel.shrink.x()));
         if (signed_area(panel.outline) < 0) lines.push_back("wrong side up");
         const std::string halo = " stroke=\"#f4efe4\" stroke-width=\"" + number(0.25 * size) +
                                  "\" paint-order=\"stroke\"" +

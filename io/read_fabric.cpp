@@ -98,6 +98,8 @@ bool is_fabric_file(const std::string& name) {
     return name.ends_with(".json");
 }
 
+std::string fabric_file(const std::string& name) { return is_fabric_file(name) ? name : ""; }
+
 Fabric read_fabric(std::istream& in, const std::string& name) {
     return read_text_of(read_text(in, name, max_bytes), name);
 }

@@ -12,6 +12,8 @@ namespace toile {
 
 /// Whether a fabric's name is that of a file: it ends in ".json".
 bool is_fabric_file(const std::string& name);
+/// That file; empty for the name of a preset.
+std::string fabric_file(const std::string& name);
 
 /// Throws InputError: not JSON, unknown keys, numbers out of their range, what is no stretch curve, a membrane that would not be
 /// positive definite.

@@ -3,7 +3,9 @@
 
 #include "patterns/curve.h"
 #include "patterns/plane.h"
+#include "patterns/shrink.h"
 
+#include <cmath>
 #include <stdexcept>
 
 namespace toile {
@@ -58,14 +60,44 @@ Vec2 direction_of(const Pattern& pattern, int panel, int edge) {
     return (e.end - e.start) / length;
 }
 
+/// What does not move an outline.
+void alter_lengths(const Alteration& a, double amount, Pattern& pattern) {
+    for (const ElasticMove& m : a.elastics) {
+        if (m.elastic < 0 || m.elastic >= int(pattern.elastics.size()))
+            throw std::invalid_argument("there is no elastic " + std::to_string(m.elastic));
+        pattern.elastics[m.elastic].ratio += amount * m.ratio;
+    }
+    for (const ShrinkMove& m : a.shrinks) {
+        if (m.panel < 0 || m.panel >= int(pattern.panels.size()))
+            throw std::invalid_argument("there is no panel " + std::to_string(m.panel));
+        pattern.panels[m.panel].shrink += amount * m.share;
+    }
+    for (const EaseMove& m : a.eases)
+        if (m.seam < 0 || m.seam >= int(pattern.seams.size())) throw std::invalid_argument("there is no seam " + std::to_string(m.seam));
+}
+
+/// What rounding alone takes beyond an end of its range is at it.
+double within(double v, double low, double high) {
+    constexpr double rounding = 1e-12;
+    if (std::abs(v - low) < rounding) return low;
+    return std::abs(v - high) < rounding ? high : v;
+}
+
 int next(const Pattern& pattern, int panel, int edge) { return (edge + 1) % int(pattern.panels[panel].outline.size()); }
 
 } // namespace
+
+double in_unit(const Alteration& a, double amount) { return (a.share ? 100 : 1e3) * amount; }
+const char* unit_of(const Alteration& a) { return a.share ? "percent" : "mm"; }
 
 Pattern altered(const Pattern& pattern, const std::vector<Alteration>& alterations, const Eigen::VectorXd& amounts) {
     if (amounts.size() != Eigen::Index(alterations.size()))
         throw std::invalid_argument("expected one amount for every alteration");
     Pattern result = pattern;
+    for (std::size_t k = 0; k < alterations.size(); ++k) alter_lengths(alterations[k], amounts[Eigen::Index(k)], result);
+    for (Elastic& e : result.elastics) e.ratio = within(e.ratio, least_ratio, 1);
+    for (Panel& p : result.panels)
+        for (double& share : p.shrink) share = within(share, -most_shrink, most_shrink);
     const auto each = [&](bool controls, auto&& move) {
         for (std::size_t k = 0; k < alterations.size(); ++k)
             for (const OutlineMove& m : alterations[k].moves)
@@ -107,6 +139,18 @@ std::vector<OutlineMove> widen_dart(const Pattern& pattern, int panel, int edge)
     if (!(mouth.norm() > 0)) throw std::invalid_argument("the dart at " + called(pattern, panel, edge) + " has no mouth");
     const Vec2 half = 0.5 * mouth.normalized();
     return {{{panel, edge, 0}, -half}, {{panel, next(pattern, panel, out), 0}, half}};
+}
+
+std::vector<ElasticMove> lengthen_elastics(const Pattern& pattern, const std::vector<int>& elastics) {
+    double cloth = 0;
+    for (const int e : elastics) {
+        if (e < 0 || e >= int(pattern.elastics.size())) throw std::invalid_argument("there is no elastic " + std::to_string(e));
+        cloth += length_at_rest(pattern, pattern.elastics[e].span);
+    }
+    if (!(cloth > 0)) throw std::invalid_argument("an elastic on cloth of no length cannot be altered");
+    std::vector<ElasticMove> moves;
+    for (const int e : elastics) moves.push_back({e, 1 / cloth});
+    return moves;
 }
 
 std::vector<OutlineMove> move_seam(const Pattern& pattern, int seam) {

@@ -4,6 +4,7 @@
 #include "geometry/text.h"
 #include "patterns/crossing.h"
 #include "patterns/curve.h"
+#include "patterns/shrink.h"
 
 #include <Eigen/LU>
 
@@ -140,7 +141,7 @@ private:
     }
 
     void check_panel(const Panel& panel) {
-        if (!check_placement(panel)) return;
+        if (!check_placement(panel) || !check_shrink(panel)) return;
         if (panel.rest) return check_rest(panel);
         bool sound = true;
         const std::vector<Part> parts = parts_of(panel);
@@ -162,6 +163,17 @@ private:
         if (at.translation.norm() > options_.max_translation)
             error(capital(called(panel)) + " starts " + said(at.translation.norm()) +
                   " away from the origin; check the units");
+        return true;
+    }
+
+    bool check_shrink(const Panel& panel) {
+        if (!(panel.shrink.array().abs() <= most_shrink).all()) {
+            error(capital(called(panel)) + text(" is shrunk by %g of its weft and %g of its warp; from %g to %g was expected",
+                                                panel.shrink.x(), panel.shrink.y(), -most_shrink, most_shrink));
+            return false;
+        }
+        if (panel.shrink != Vec2::Zero())
+            add(Severity::note, capital(called(panel)) + " is " + shrink_in_words(panel) + " after it is cut");
         return true;
     }
 
@@ -459,11 +471,13 @@ bool has_error(const std::vector<Issue>& issues) {
                        [](const Issue& i) { return i.severity == Severity::error; });
 }
 
+SeamLengths lengths_of(double a, double b) {
+    const auto [low, high] = std::minmax(a, b);
+    return {a, b, low > 0 ? high / low - 1 : std::numeric_limits<double>::infinity()};
+}
+
 SeamLengths seam_lengths(const Pattern& pattern, const Seam& seam) {
-    SeamLengths l{side_length(pattern, seam.a), side_length(pattern, seam.b), 0};
-    const auto [low, high] = std::minmax(l.a, l.b);
-    l.ease = low > 0 ? high / low - 1 : std::numeric_limits<double>::infinity();
-    return l;
+    return lengths_of(side_length(pattern, seam.a), side_length(pattern, seam.b));
 }
 
 SeamSpan seam_span_at_start(const Pattern& pattern, const Seam& seam) {

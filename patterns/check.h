@@ -41,7 +41,10 @@ std::vector<Issue> check(const Pattern& pattern, const CheckOptions& options = {
 /// True when one of the issues is an error.
 bool has_error(const std::vector<Issue>& issues);
 
-/// Lengths of both sides. The seam's spans must exist.
+/// The ease of two such sides.
+SeamLengths lengths_of(double a, double b);
+
+/// Lengths of both sides as they are cut. The seam's spans must exist.
 SeamLengths seam_lengths(const Pattern& pattern, const Seam& seam);
 
 /// Mean distance between the two sides where the panels start out, sample by sample: as the seam says, and

@@ -51,6 +51,9 @@ struct Panel {
     std::string label;    ///< body part the file assigns: "body", "leg", "arm"; may be empty
     std::string fabric;   ///< preset or name from the companion file; empty: the garment's
     double grain = EIGEN_PI / 2; ///< direction of the warp, rad from the panel's x axis; default: the panel's y
+    /// By which share of their length as cut (weft, warp) the cloth is shorter at rest: steam shrinks it, and stretches it
+    /// where this is below 0. Fabrics are what the cloth is then.
+    Vec2 shrink = Vec2::Zero();
     int layer = 0;        ///< 0 lies next to the body, larger lies outside
     /// Cloth that is not flat at rest. The outline then has edges of the same number, label and length, which are straight and
     /// have no shape; it is empty for a closed surface. There are no holes and no lines.
@@ -83,7 +86,9 @@ struct Elastic {
     EdgeSpan span;
     double ratio = 1;       ///< (0, 1]
     double stiffness = 100; ///< N per unit strain
+    int item = -1;          ///< of the elastics in the file that says it, from 0
 };
+constexpr double least_ratio = 0.05; ///< of elastics in files
 
 /// A span of an edge held where it starts out.
 struct Pin { EdgeSpan span; };

@@ -2,8 +2,7 @@
 #include "sewing/garment.h"
 
 #include "geometry/disjoint_sets.h"
-#include "patterns/curve.h"
-#include "patterns/plane.h"
+#include "patterns/shrink.h"
 #include "sewing/mesh_grain.h"
 
 #include <algorithm>
@@ -16,13 +15,6 @@ namespace toile {
 namespace {
 
 constexpr double eased = 0.02; // a seam whose sides differ by more is eased or gathered
-
-double side_length(const Pattern& pattern, const SeamSide& side) {
-    double sum = 0;
-    for (const EdgeSpan& span : side)
-        sum += length(pattern.panels[span.panel].outline[span.edge]) * std::abs(span.t1 - span.t0);
-    return sum;
-}
 
 /// The edges of rest meshes are chords here; moulded() makes arcs of them.
 RestShape rest_of(const Pattern& pattern, const Garment& g) {
@@ -78,9 +70,7 @@ void mark_seams(const Pattern& pattern, const FlatLevel& flat, Garment& g) {
     g.seam_edge.assign(g.edges.size(), false);
     std::vector<bool> on_eased(g.uv.size(), false);
     for (std::size_t s = 0; s < flat.sewn.size(); ++s) {
-        const double a = side_length(pattern, pattern.seams[s].a),
-                     b = side_length(pattern, pattern.seams[s].b);
-        const bool uneven = std::max(a, b) > (1 + eased) * std::min(a, b);
+        const bool uneven = seam_lengths_at_rest(pattern, pattern.seams[s]).ease > eased;
         for (const SewnSegment& segment : flat.sewn[s])
             for (const std::array<int, 2>& side : {segment.a, segment.b}) {
                 g.seam_edge[edge_between(g.edges, side[0], side[1])] = true;
@@ -127,6 +117,16 @@ void refuse_collapse(const Garment& g) {
 
 double rest_area(const Mat2& edges) { return 0.5 * std::abs(edges.determinant()); }
 
+std::vector<double> rest_areas(const Garment& garment) {
+    std::vector<double> areas;
+    for (const Mat2& edges : garment.rest.edges) areas.push_back(rest_area(edges));
+    return areas;
+}
+
+std::vector<double> node_areas(const Garment& garment) {
+    return corner_areas(garment.node_count, node_triangles(garment), rest_areas(garment));
+}
+
 double cut_length(const Garment& garment, int a, int b) {
     const int e = edge_between(garment.edges, garment.node_of_vertex[a], garment.node_of_vertex[b]);
     for (int k = garment.edges.first[e]; k < garment.edges.first[e + 1]; ++k) {
@@ -154,7 +154,7 @@ std::vector<int> vertices_along(const Garment& garment, const EdgeSpan& span) {
 Garment sew(const Pattern& pattern, const FlatLevel& flat) {
     Garment g;
     for (std::size_t v = 0; v < flat.points.size(); ++v)
-        g.uv.push_back(to_grain(pattern.panels[flat.panel_of_point[v]].grain) * flat.points[v]);
+        g.uv.push_back(to_rest(pattern.panels[flat.panel_of_point[v]]) * flat.points[v]);
     g.panel_of_vertex = flat.panel_of_point;
     g.triangles = flat.triangles;
     g.panel_of_triangle = flat.panel_of_triangle;

@@ -4,6 +4,7 @@
 // The garment as one cloth: cut vertices that know their panel, nodes in space that seams share.
 
 #include "geometry/edges.h"
+#include "geometry/tri_mesh.h"
 #include "patterns/triangulate.h"
 
 namespace toile {
@@ -53,7 +54,7 @@ struct BorderLine {
 
 struct Garment {
     // The cut cloth, by vertex and triangle.
-    std::vector<Vec2> uv; ///< grain coordinates (weft, warp) in metres
+    std::vector<Vec2> uv; ///< grain coordinates (weft, warp) in metres, of the cloth at rest unless that is moulded
     std::vector<int> panel_of_vertex;
     std::vector<Triangle> triangles; ///< over vertices; front is the fabric's right side
     std::vector<int> panel_of_triangle;
@@ -80,6 +81,10 @@ struct Garment {
 
 /// Whether the cloth is folded at this edge: it is smooth elsewhere.
 inline bool is_crease(const Garment& garment, int edge) { return garment.rest.angles[edge] != 0; }
+
+/// The rest area of every triangle, m2, and of every node: a third of those of the triangles round it.
+std::vector<double> rest_areas(const Garment& garment);
+std::vector<double> node_areas(const Garment& garment);
 
 /// Vertices of the garment along a span of an outline, from t0 to t1. Spans of seams, pins and elastics end
 /// exactly in vertices; of others, the vertices inside are returned.

@@ -38,8 +38,18 @@ void summarise(std::ostream& out, const FitOutcome& outcome) {
         out << text("goal %s: %.4g, was %.4g, allowed %.4g\n", g["name"].get<std::string>().c_str(), g["after"].get<double>(),
                     g["before"].get<double>(), g["tolerance"].get<double>());
     for (const auto& a : r["alterations"])
-        out << text("%+8.2f mm  %s%s\n", a["mm"].get<double>(), a["name"].get<std::string>().c_str(),
-                    a["at_bound"].get<bool>() ? " (at its bound)" : "");
+        out << (a.contains("mm") ? text("%+8.2f mm  ", a["mm"].get<double>()) : text("%+8.2f %%   ", a["percent"].get<double>()))
+            << a["name"].get<std::string>() << (a["at_bound"].get<bool>() ? " (at its bound)" : "") << '\n';
+    for (const auto& e : r["elastics"])
+        out << text("elastic on edge %d of panel %s: %.1f mm relaxed, was %.1f\n", e["edge"].get<int>(), e["panel"].get<std::string>().c_str(),
+                    e["relaxed_after_mm"].get<double>(), e["relaxed_before_mm"].get<double>());
+    for (const auto& s : r["shrunk"])
+        out << text("panel %s, after it is cut: shrunk by %.2f %% along the warp, was %.2f, and %.2f %% along the weft, was %.2f\n",
+                    s["panel"].get<std::string>().c_str(), s["warp_after_percent"].get<double>(), s["warp_before_percent"].get<double>(),
+                    s["weft_after_percent"].get<double>(), s["weft_before_percent"].get<double>());
+    for (const auto& s : r["seams"]["eased"])
+        out << text("eased: %s, %.1f to %.1f mm at rest\n", s["seam"].get<std::string>().c_str(), s["a_mm"].get<double>(),
+                    s["b_mm"].get<double>());
     out << text("%d seams kept, their sides differ by %.4f mm at most beyond their ease\n", r["seams"]["kept"].get<int>(),
                 r["seams"]["unequal_mm"].get<double>());
     list_written(out, outcome.written);

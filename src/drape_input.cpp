@@ -86,9 +86,10 @@ Pattern named_panels(const Garment& g) {
 
 void refuse_shapes(const Pattern& pattern, const std::string& companion) {
     for (const Panel& panel : pattern.panels)
-        if (!panel.holes.empty() || !panel.lines.empty() || panel.grain != Panel{}.grain)
+        if (!panel.holes.empty() || !panel.lines.empty() || panel.grain != Panel{}.grain ||
+            panel.shrink != Vec2::Zero())
             throw InputError(companion + " gives panel \"" + panel.name +
-                             "\" a grain, holes or lines; a staged mesh has its own, and fabric, layer, pins and "
+                             "\" a grain, shrinkage, holes or lines; a staged mesh has its own, and fabric, layer, pins and "
                              "elastics were expected");
     if (!pattern.seams.empty())
         throw InputError(companion + " gives seams; a staged mesh has its stitches in the mesh file");

@@ -4,11 +4,12 @@
 #include "geometry/text.h"
 #include "io/companion.h"
 #include "io/fit_spec.h"
+#include "io/read_fabric.h"
 #include "io/read_garment.h"
 #include "io/write_altered.h"
 #include "io/write_file.h"
 #include "io/write_garment.h"
-#include "patterns/check.h"
+#include "patterns/shrink.h"
 #include "src/drape_input.h"
 #include "src/pipeline.h"
 
@@ -26,6 +27,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double fit_tolerance = 1e-7; // residual of equilibria
+constexpr double least_ease = 1e-4;    // m of a seam, that is told of
 
 FitGoal shape_goal_of(const GoalSpec& spec, const DrapeResult& drape) {
     const ReadGarment read = read_garment(spec.file);
@@ -120,7 +122,7 @@ Json alterations_json(const MovingFlat& moving, const FitResult& r) {
     for (std::size_t k = 0; k < moving.alterations.size(); ++k) {
         const Alteration& a = moving.alterations[k];
         const bool bound = std::find(r.at_bounds.begin(), r.at_bounds.end(), a.name) != r.at_bounds.end();
-        all.push_back({{"name", a.name}, {"mm", 1e3 * r.amounts[Eigen::Index(k)]}, {"at_bound", bound}});
+        all.push_back({{"name", a.name}, {unit_of(a), in_unit(a, r.amounts[Eigen::Index(k)])}, {"at_bound", bound}});
     }
     return all;
 }
@@ -136,6 +138,44 @@ Json edges_json(const Pattern& drawn, const Pattern& pattern) {
     return all;
 }
 
+Json elastics_json(const Pattern& drawn, const Pattern& pattern) {
+    Json all = Json::array();
+    for (const ElasticChange& c : elastic_changes(drawn, pattern)) {
+        const EdgeSpan& span = drawn.elastics[c.elastic].span;
+        all.push_back({{"panel", drawn.panels[span.panel].name},
+                       {"edge", span.edge},
+                       {"relaxed_before_mm", 1e3 * c.before},
+                       {"relaxed_after_mm", 1e3 * c.after},
+                       {"ratio", pattern.elastics[c.elastic].ratio}});
+    }
+    return all;
+}
+
+Json shrunk_json(const Pattern& drawn, const Pattern& pattern) {
+    Json all = Json::array();
+    for (std::size_t p = 0; p < drawn.panels.size(); ++p) {
+        const Vec2 before = 100 * drawn.panels[p].shrink, now = 100 * pattern.panels[p].shrink;
+        if (before == now) continue;
+        all.push_back({{"panel", drawn.panels[p].name},
+                       {"warp_before_percent", before.y()},
+                       {"warp_after_percent", now.y()},
+                       {"weft_before_percent", before.x()},
+                       {"weft_after_percent", now.x()}});
+    }
+    return all;
+}
+
+/// Seams whose sides at rest differ otherwise than as drawn, by cut or by steam.
+Json eased_json(const Pattern& drawn, const Pattern& pattern) {
+    Json all = Json::array();
+    for (const Seam& seam : pattern.seams) {
+        const SeamLengths was = seam_lengths_at_rest(drawn, seam), now = seam_lengths_at_rest(pattern, seam);
+        if (std::abs(now.a - was.a / was.b * now.b) < least_ease) continue;
+        all.push_back({{"seam", seam.name}, {"a_mm", 1e3 * now.a}, {"b_mm", 1e3 * now.b}, {"ease_percent", 100 * now.ease}});
+    }
+    return all;
+}
+
 Json goals_json(const std::vector<FitGoal>& goals, const FitResult& r) {
     Json all = Json::array();
     for (std::size_t k = 0; k < goals.size(); ++k)
@@ -147,11 +187,18 @@ Json goals_json(const std::vector<FitGoal>& goals, const FitResult& r) {
     return all;
 }
 
-std::vector<std::string> targets(const FitJob& job) {
+/// Whether there will be something to say beside the pattern.
+bool needs_companion(const std::string& pattern, const FitSpec& spec) {
+    const auto shrinks = [](const Alteration& a) { return !a.shrinks.empty(); };
+    return fs::exists(companion_path(pattern)) || !spec.put_in.empty() ||
+           std::any_of(spec.alterations.begin(), spec.alterations.end(), shrinks);
+}
+
+std::vector<std::string> targets(const FitJob& job, bool companion) {
     std::vector<std::string> all = job.garments;
     for (const std::string& file : {job.output, job.picture, job.report})
         if (!file.empty()) all.push_back(file);
-    if (!job.output.empty() && fs::exists(companion_path(job.pattern))) all.push_back(companion_path(job.output));
+    if (!job.output.empty() && companion) all.push_back(companion_path(job.output));
     return all;
 }
 
@@ -163,13 +210,17 @@ void refuse_faults(const Pattern& pattern) {
 } // namespace
 
 FitOutcome run_fit(const FitJob& job) {
-    refuse_targets({job.pattern, companion_path(job.pattern), job.spec, job.avatar}, targets(job));
+    const std::vector<std::string> inputs{job.pattern, companion_path(job.pattern), job.spec, job.avatar, fabric_file(job.fabric)};
+    refuse_targets(inputs, targets(job, fs::exists(companion_path(job.pattern))));
     std::vector<std::string> warnings;
-    const Pattern pattern = sound_pattern(job.pattern, warnings);
+    Pattern pattern = sound_pattern(job.pattern, warnings);
     if (const Panel* panel = moulded_panel(pattern))
         throw InputError("panel " + panel->name + " keeps the triangles of " + panel->rest->file +
                          ", which alterations of outlines do not reach; toile fit expects flat panels");
     const FitSpec spec = read_fit_spec(job.spec, pattern);
+    pattern.elastics.insert(pattern.elastics.end(), spec.put_in.begin(), spec.put_in.end());
+    const bool companion = needs_companion(job.pattern, spec);
+    refuse_targets(inputs, targets(job, companion));
     const Body body = read_body(job.avatar, job.form, job.repair_avatar);
     const Avatar avatar{body.mesh, smoothed_toward_core(body.mesh, 0.01)};
     const DrapeInput input = input_of(pattern, job.fabric, job.edge_length);
@@ -200,7 +251,9 @@ FitOutcome run_fit(const FitJob& job) {
     report["goals"] = goals_json(goals, r);
     report["alterations"] = alterations_json(moving, r);
     report["edges"] = edges_json(pattern, now);
-    report["seams"] = {{"kept", r.seams}, {"unequal_mm", 1e3 * r.unequal}};
+    report["elastics"] = elastics_json(pattern, now);
+    report["shrunk"] = shrunk_json(pattern, now);
+    report["seams"] = {{"kept", r.seams}, {"unequal_mm", 1e3 * r.unequal}, {"eased", eased_json(pattern, now)}};
     report["evaluations"] = r.evaluations;
     report["not_at_rest"] = r.not_at_rest;
     report["rounds"] = r.rounds;
@@ -209,13 +262,12 @@ FitOutcome run_fit(const FitJob& job) {
 
     if (!job.output.empty()) {
         write_file(job.output, altered_pattern_text(job.pattern, pattern, now));
-        if (const std::string companion = companion_path(job.pattern); fs::exists(companion))
-            write_file(companion_path(job.output), read_file(companion, 64u << 20));
+        if (companion) write_file(companion_path(job.output), altered_companion_text(companion_path(job.pattern), pattern, now));
     }
     for (const std::string& path : job.garments) write_garment(path, drape.garment_at(r.amounts), r.x);
     if (!job.picture.empty()) write_file(job.picture, altered_svg(pattern, now));
     if (!job.report.empty()) write_file(job.report, outcome.report);
-    outcome.written = targets(job);
+    outcome.written = targets(job, companion);
     return outcome;
 }
 

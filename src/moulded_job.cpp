@@ -39,7 +39,7 @@ Points warp_of(const ReadGarment& read) {
 } // namespace
 
 MouldedOutcome run_moulded(const MouldedJob& job) {
-    refuse_targets({job.shape, is_fabric_file(job.fabric) ? job.fabric : ""}, targets(job));
+    refuse_targets({job.shape, fabric_file(job.fabric)}, targets(job));
     const ReadGarment read = read_garment(job.shape);
     const Prescribed shape = measured_in(job.shape, read);
     const Fabric fabric = fabric_called(job.fabric);

@@ -13,6 +13,7 @@
 #include "io/write_file.h"
 #include "draping/drape_to_accuracy.h"
 #include "draping/hooks.h"
+#include "patterns/shrink.h"
 #include "sewing/blas.h"
 #include "src/drape_input.h"
 #include "src/exit_code.h"
@@ -191,7 +192,9 @@ AccuracyOptions accuracy_options(const DrapeJob& job, const Pattern& pattern) {
     if (job.accuracy_seconds > 0) o.budget = job.accuracy_seconds;
     o.finest = std::max(o.finest, finest_edge(pattern, job.drape.max_memory));
     o.mesh = [&pattern](double edge_length, const PlaceFactor& size) {
-        return stage(pattern, flat_of(pattern, edge_length, false, size));
+        PlaceFactor in_panel;
+        if (size) in_panel = [&](int panel, const Vec2& at) { return size(panel, to_rest(pattern.panels[panel]) * at); };
+        return stage(pattern, flat_of(pattern, edge_length, false, in_panel));
     };
     return o;
 }

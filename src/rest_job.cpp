@@ -5,6 +5,7 @@
 #include "geometry/text.h"
 #include "io/prescribed_json.h"
 #include "io/preview.h"
+#include "io/read_fabric.h"
 #include "io/write_file.h"
 #include "io/write_garment.h"
 #include "src/pipeline.h"
@@ -32,7 +33,7 @@ Prescribed measured_like(const std::string& path, const Prescribed& data) {
     return other;
 }
 
-Prescribed read_data(const RestJob& job, const ReadGarment& read) {
+Prescribed read_data(const RestJob& job, const ReadGarment& read, const Fabric& fabric) {
     Prescribed data = measured_in(job.shape, read);
     if (!job.lengths_of.empty()) data.length = measured_like(job.lengths_of, data).length;
     if (!job.angles_of.empty()) data.angle = measured_like(job.angles_of, data).angle;
@@ -48,7 +49,7 @@ Prescribed read_data(const RestJob& job, const ReadGarment& read) {
     if (job.length_weight > 0)
         data.length_weight.assign(data.length.size(), job.length_weight);
     else
-        weigh(data, fabric_preset(job.fabric));
+        weigh(data, fabric);
     return data;
 }
 
@@ -145,9 +146,10 @@ std::vector<int> points_of_file(const ReadGarment& read) {
 }
 
 RestOutcome run_rest(const RestJob& job) {
-    refuse_targets({job.shape, job.lengths_of, job.angles_of, job.data}, targets(job));
+    refuse_targets({job.shape, job.lengths_of, job.angles_of, job.data, fabric_file(job.fabric)}, targets(job));
     const ReadGarment read = read_garment(job.shape);
-    const Prescribed data = read_data(job, read);
+    const Fabric fabric = fabric_called(job.fabric);
+    const Prescribed data = read_data(job, read, fabric);
     RestOutcome outcome;
     outcome.states = nearest_shapes(data, read.x);
     outcome.written = targets(job);
@@ -155,7 +157,7 @@ RestOutcome run_rest(const RestJob& job) {
     const std::vector<double> off = misfit(data), defects = angle_defects(data);
     const DataCount count = count_data(data, outcome.states.empty() ? read.x : outcome.states[0].shape.x);
     Json report{{"toile", TOILE_VERSION}, {"status", outcome.states.empty() ? "stalled" : "found"}};
-    report["weights"] = job.length_weight > 0 ? Json{{"length", job.length_weight}, {"angle", 1}} : Json{{"fabric", job.fabric}};
+    report["weights"] = job.length_weight > 0 ? Json{{"length", job.length_weight}, {"angle", 1}} : Json{{"fabric", fabric.name}};
     report["data"] = {{"points", data.point_count},
                       {"inner_points", count.inner_points},
                       {"lengths", count.lengths},

@@ -19,7 +19,7 @@ struct RestJob {
     std::string lengths_of; ///< file with the same triangles, whose lengths are prescribed; empty: those of `shape`
     std::string angles_of;  ///< the same for angles
     std::string data;       ///< file that changes some of them; empty: none
-    std::string fabric = "poplin"; ///< whose stiffnesses weigh lengths against angles,
+    std::string fabric = "poplin"; ///< preset or file, whose stiffnesses weigh lengths against angles,
     double length_weight = 0; ///< J; more than 0: lengths have this weight instead, and angles 1
     bool relax = false;     ///< the rest shape is what the nearest shape measures; else what was prescribed
 

@@ -5,6 +5,7 @@
 #include "geometry/text.h"
 #include "io/prescribed_json.h"
 #include "io/preview.h"
+#include "io/read_fabric.h"
 #include "io/write_file.h"
 #include "src/pipeline.h"
 #include "src/rest_job.h"
@@ -109,7 +110,8 @@ void refuse_impossible(const SagFreeJob& job, const ReadGarment& read, const Pre
                           job.shape.c_str(), read.file_node[k[0]] + 1, read.file_node[k[1]] + 1, read.file_node[k[2]] + 1));
 }
 
-Json report_of(const SagFreeJob& job, const ReadGarment& read, const Prescribed& shape, const SagFree& found, const Points& load) {
+Json report_of(const SagFreeJob& job, const ReadGarment& read, const Prescribed& shape, const SagFree& found, const Points& load,
+               const std::string& fabric) {
     std::vector<double> lengths, angles;
     for (int e = 0; e < shape.edges.size(); ++e) {
         lengths.push_back(found.rest.length[e] / shape.length[e] - 1);
@@ -117,7 +119,7 @@ Json report_of(const SagFreeJob& job, const ReadGarment& read, const Prescribed&
     }
     double weight = 0;
     for (const Vec3& f : load) weight += f.norm();
-    Json report{{"toile", TOILE_VERSION}, {"status", status_of(found.end)}, {"fabric", job.fabric}, {"weight", weight}};
+    Json report{{"toile", TOILE_VERSION}, {"status", status_of(found.end)}, {"fabric", fabric}, {"weight", weight}};
     report["residual"] = residual_json(found, read, job.options.tolerance * largest(load));
     report["stable"] = found.end == BalanceEnd::balanced ? Json(found.stable) : Json();
     report["length_change"] = largest_json(shape, read, lengths);
@@ -137,11 +139,11 @@ SagFreeOutcome run_sag_free(const SagFreeJob& job) {
     for (const std::string& file : {job.rest, job.preview, job.report})
         if (!file.empty()) outcome.written.push_back(file);
     const bool hold_is_file = job.hold != "borders" && !is_list(job.hold);
-    refuse_targets({job.shape, hold_is_file ? job.hold : ""}, outcome.written);
+    refuse_targets({job.shape, hold_is_file ? job.hold : "", fabric_file(job.fabric)}, outcome.written);
     const ReadGarment read = read_garment(job.shape);
     const Prescribed shape = measured_in(job.shape, read);
     const std::vector<char> held = held_points(job, read, shape.edges);
-    const Fabric& fabric = fabric_preset(job.fabric);
+    const Fabric fabric = fabric_called(job.fabric);
     const Points load = weight_of(shape.triangles, read.x, fabric.density, DrapeOptions().gravity);
     const SagFree& found = outcome.found = sag_free(shape.triangles, read.x, fabric, load, held, job.options);
     refuse_impossible(job, read, found.rest);
@@ -153,7 +155,7 @@ SagFreeOutcome run_sag_free(const SagFreeJob& job) {
         for (const Vec3& f : found.missing) options.heat.push_back(most > 0 ? f.norm() / most : 0);
         write_preview(job.preview, read.garment, read.x, {}, options);
     }
-    outcome.report = report_of(job, read, shape, found, load).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+    outcome.report = report_of(job, read, shape, found, load, fabric.name).dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
     if (!job.report.empty()) write_file(job.report, outcome.report);
     return outcome;
 }

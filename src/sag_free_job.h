@@ -13,7 +13,7 @@ namespace toile {
 struct SagFreeJob {
     std::string shape;  ///< file: the mesh as it is to hang, y up
     std::string hold;   ///< what holds it: numbers of points in the file from 1, "1,2,3", "borders", or a file of numbers
-    std::string fabric = "poplin";
+    std::string fabric = "poplin"; ///< preset or file
     SagFreeOptions options;
 
     std::string rest;    ///< file of the rest shape, JSON; empty: not written

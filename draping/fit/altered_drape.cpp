@@ -5,7 +5,7 @@
 #include "draping/hooks.h"
 #include "draping/settle_level.h"
 #include "geometry/foot.h"
-#include "patterns/plane.h"
+#include "patterns/shrink.h"
 
 #include <stdexcept>
 
@@ -31,6 +31,7 @@ AlteredDrape::AlteredDrape(const MovingFlat& moving, const Eigen::VectorXd& amou
                            const AlteredOptions& how)
     : moving_(moving), staging_(stage(moving.drawn, moving.flat)), body_(body), fabrics_(fabrics), options_(options), how_(how),
       friction_(drape.friction), garment_(drape.garment), amounts_(amounts) {
+    staging_.elastics = pattern_at(amounts).elastics;
     DrapeRun run{.staging = staging_, .avatar = body_, .fabrics = fabrics_, .options = options_};
     run.level = run.levels() - 1;
     for (const Fabric& f : fabrics_) run.density = std::max(run.density, f.density);
@@ -46,8 +47,11 @@ AlteredDrape::AlteredDrape(const MovingFlat& moving, const Eigen::VectorXd& amou
     add_fixtures(run, *problem_);
 }
 
-Garment AlteredDrape::garment_at(const Eigen::VectorXd& amounts) const {
-    const Pattern pattern = altered(moving_.drawn, moving_.alterations, amounts);
+Pattern AlteredDrape::pattern_at(const Eigen::VectorXd& amounts) const {
+    return altered(moving_.drawn, moving_.alterations, amounts);
+}
+
+Garment AlteredDrape::garment_of(const Pattern& pattern) const {
     const int level = int(moving_.flat.levels.size()) - 1;
     const std::vector<Vec2> points = moved_points(moving_, pattern, level);
     if (const int t = collapsed_triangle(moving_, points, level, least_area); t >= 0)
@@ -55,7 +59,7 @@ Garment AlteredDrape::garment_at(const Eigen::VectorXd& amounts) const {
                                     " is altered so far that its cloth would fold over");
     Garment garment = garment_;
     for (std::size_t v = 0; v < points.size(); ++v)
-        garment.uv[v] = to_grain(pattern.panels[garment.panel_of_vertex[v]].grain) * points[v];
+        garment.uv[v] = to_rest(pattern.panels[garment.panel_of_vertex[v]]) * points[v];
     for (std::size_t t = 0; t < garment.triangles.size(); ++t) {
         const Triangle& v = garment.triangles[t];
         garment.rest.edges[t] << garment.uv[v[1]] - garment.uv[v[0]], garment.uv[v[2]] - garment.uv[v[0]];
@@ -65,9 +69,10 @@ Garment AlteredDrape::garment_at(const Eigen::VectorXd& amounts) const {
 
 void AlteredDrape::take(const Eigen::VectorXd& amounts) {
     if (amounts == amounts_) return;
-    const Garment garment = garment_at(amounts);
+    const Pattern pattern = pattern_at(amounts);
+    const Garment garment = garment_of(pattern);
     problem_->rest_on(garment, fabrics_);
-    problem_->elastics = elastic_segments(staging_, garment);
+    problem_->elastics = elastic_segments(pattern.elastics, garment);
     amounts_ = amounts;
 }
 
@@ -96,9 +101,7 @@ void AlteredDrape::draw_to(const TriMesh& surface, const Eigen::VectorXd& amount
     const Bvh tree(triangle_boxes(surface.points, surface.triangles, 0));
     const std::vector<HookSpring> own = problem_->hooks;
     problem_->rest_here(x, {});
-    std::vector<double> area(x.size(), 0.0);
-    for (int t = 0; t < int(garment_.triangles.size()); ++t)
-        for (const int n : garment_.nodes(t)) area[n] += rest_area(garment_.rest.edges[t]) / 3;
+    const std::vector<double> area = node_areas(garment_);
     SettleOptions o;
     o.tolerance = drawn;
     o.max_iterations = most_drawing;
@@ -153,9 +156,10 @@ Eigen::MatrixXd AlteredDrape::force_slopes(const Eigen::VectorXd& amounts, const
     const auto force_at = [&](Eigen::Index k, double by) {
         Eigen::VectorXd near = amounts;
         near[k] += by;
-        const Garment garment = garment_at(near);
+        const Pattern pattern = pattern_at(near);
+        const Garment garment = garment_of(pattern);
         Loads loads = *problem_;
-        loads.elastics = elastic_segments(staging_, garment);
+        loads.elastics = elastic_segments(pattern.elastics, garment);
         return rest_force(garment, fabrics_, loads, hard_limit, law, x);
     };
     Eigen::MatrixXd slopes(3 * Eigen::Index(x.size()), amounts.size());

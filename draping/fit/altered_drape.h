@@ -24,7 +24,7 @@ public:
                  const PanelFabrics& fabrics, const DrapeOptions& options, const AlteredOptions& how = {});
 
     /// The garment with these amounts, not yet at rest. Throws std::invalid_argument when they turn a triangle over.
-    Garment garment_at(const Eigen::VectorXd& amounts) const;
+    Garment garment_at(const Eigen::VectorXd& amounts) const { return garment_of(pattern_at(amounts)); }
 
     /// Brings the garment of these amounts to rest near `x`, friction frozen as it is.
     SettleResult rest(const Eigen::VectorXd& amounts, Points& x);
@@ -41,7 +41,7 @@ public:
     /// when K is not positive definite, as of a state that is no minimum.
     bool solve(const Eigen::VectorXd& amounts, const Points& x, const Eigen::VectorXd& r, Eigen::VectorXd& lambda);
 
-    /// dg/dp at x: a column for every alteration, how the forces on the nodes change with its amount while they stay, N/m; 0
+    /// dg/dp at x: a column for every alteration, how the forces on the nodes change with its amount while they stay, N/m or N per share; 0
     /// at pinned ones.
     Eigen::MatrixXd force_slopes(const Eigen::VectorXd& amounts, const Points& x) const;
 
@@ -50,6 +50,8 @@ public:
     const MovingFlat& moving() const { return moving_; }
 
 private:
+    Pattern pattern_at(const Eigen::VectorXd& amounts) const;
+    Garment garment_of(const Pattern& pattern) const;
     void take(const Eigen::VectorXd& amounts);
 
     const MovingFlat& moving_;

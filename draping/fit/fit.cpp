@@ -4,6 +4,7 @@
 #include "draping/fit/adjoint.h"
 #include "geometry/text.h"
 #include "patterns/check.h"
+#include "patterns/shrink.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -20,18 +21,57 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double length_step = 1e-6;  // m, of the difference by which a seam's slope is found
+constexpr double length_step = 1e-6;  // of an amount, of the difference by which a seam's slope is found
 constexpr double seam_unit = 1e-3;    // m, in which the optimiser is told of seams
-constexpr double moved = 1e-6;        // m per m: a seam that an alteration changes by less it does not change
+constexpr double moved = 1e-6;        // m for an amount of 1: a seam that an alteration changes by less it does not change
 constexpr double independent = 1e-6;  // of the largest slope: seams below follow from others
 constexpr double at_rest = 1e-3;      // residual beyond which an equilibrium is none
 constexpr double comfortable = 0.5;   // of its tolerance, with which a goal ends the search
 constexpr double at_bound = 1e-3;     // of the room between bounds
 constexpr double gain = 0.01;         // of the value, for which another round is begun, or another step made
 constexpr double least_stay = 1e-6;
+constexpr double rounding = 1e-9;     // of ratios and shares
+
+/// Points of a panel about their mean, in the cloth at rest.
+std::vector<Vec2> about_mean(const MovingFlat& moving, int panel) {
+    const FlatLevel& level = moving.flat.levels.back();
+    std::vector<Vec2> points;
+    Vec2 mean = Vec2::Zero();
+    for (std::size_t v = 0; v < level.points.size(); ++v) {
+        if (level.panel_of_point[v] != panel) continue;
+        points.push_back(to_rest(moving.drawn.panels[panel]) * level.points[v]);
+        mean += points.back();
+    }
+    for (Vec2& p : points) p -= mean / double(points.size());
+    return points;
+}
+
+/// Sum of the squares of what the points of an edge move by, toward the middle of a part of it that is gathered by so much.
+double along_span(const MovingFlat& moving, const EdgeSpan& span, double by) {
+    const auto [low, high] = std::minmax(span.t0, span.t1);
+    double sum = 0;
+    for (const double t : moving.flat.levels.back().border_at[span.panel][span.edge])
+        if (t >= low && t <= high) sum += std::pow(by * ((t - low) / (high - low) - 0.5), 2);
+    return sum;
+}
+
+/// Sum of the squares of what the points move by for a unit of what alters rest lengths: cloth shrinks about its middle, and
+/// is gathered along an elastic or a seam toward the middle of that.
+double gathering(const MovingFlat& moving, const Alteration& a) {
+    double sum = 0;
+    for (const ShrinkMove& m : a.shrinks)
+        for (const Vec2& p : about_mean(moving, m.panel)) sum += m.share.cwiseProduct(p).squaredNorm();
+    for (const ElasticMove& m : a.elastics) {
+        const EdgeSpan& span = moving.drawn.elastics[m.elastic].span;
+        sum += along_span(moving, span, m.ratio * length_at_rest(moving.drawn, span));
+    }
+    for (const EaseMove& m : a.eases)
+        for (const EdgeSpan& span : moving.drawn.seams[m.seam].a) sum += along_span(moving, span, m.length);
+    return sum;
+}
 
 /// What the amounts cost by themselves: for a unit of cost an alteration moves the cloth's points by a tolerance, in their
-/// root mean square. 1/m2.
+/// root mean square. One over the square of an amount.
 VectorXd cost_of(const MovingFlat& moving, const VectorXd& at, double tolerance) {
     const int level = int(moving.flat.levels.size()) - 1;
     VectorXd cost(at.size());
@@ -44,7 +84,9 @@ VectorXd cost_of(const MovingFlat& moving, const VectorXd& at, double tolerance)
         const std::vector<Vec2> low = points(-length_step), high = points(length_step);
         double sum = 0;
         for (std::size_t v = 0; v < low.size(); ++v) sum += (high[v] - low[v]).squaredNorm();
-        cost[k] = std::max(sum / double(low.size()) / (4 * length_step * length_step), 1e-6) / (tolerance * tolerance);
+        const double points_in_all = double(low.size());
+        const double square = sum / points_in_all / (4 * length_step * length_step) + gathering(moving, moving.alterations[k]) / points_in_all;
+        cost[k] = std::max(square, 1e-6) / (tolerance * tolerance);
     }
     return cost;
 }
@@ -52,8 +94,13 @@ VectorXd cost_of(const MovingFlat& moving, const VectorXd& at, double tolerance)
 struct Seams {
     const MovingFlat& moving;
 
+    /// Beyond the ease as drawn and what is asked to be eased.
     double difference(int seam, const VectorXd& amounts) const {
-        return seam_difference(moving.drawn, altered(moving.drawn, moving.alterations, amounts), seam);
+        double asked = 0;
+        for (std::size_t k = 0; k < moving.alterations.size(); ++k)
+            for (const EaseMove& m : moving.alterations[k].eases)
+                if (m.seam == seam) asked += amounts[Eigen::Index(k)] * m.length;
+        return seam_difference(moving.drawn, altered(moving.drawn, moving.alterations, amounts), seam) - asked;
     }
     VectorXd slope(int seam, const VectorXd& amounts) const {
         VectorXd g(amounts.size());
@@ -99,7 +146,7 @@ struct Search {
     const std::vector<FitGoal>& goals;
     const FitOptions& options;
     std::chrono::steady_clock::time_point started;
-    VectorXd cost; ///< 1/m2, of the square of an amount, before it is weighed by options.stay
+    VectorXd cost; ///< of the square of an amount, before it is weighed by options.stay
     FitResult& result;
 
     struct Known {
@@ -188,18 +235,60 @@ OptimiseProblem problem_of(Search& search, const std::vector<int>& seams, const 
     return p;
 }
 
+/// What alterations within their bounds may make of a number, and which of them do.
+struct Reach {
+    double low, high;
+    std::string names{};
+
+    void add(const Alteration& a, double slope) {
+        if (slope == 0) return;
+        low += std::min(slope * a.low, slope * a.high);
+        high += std::max(slope * a.low, slope * a.high);
+        if (!names.ends_with('"' + a.name + '"')) names += (names.empty() ? "" : " and ") + ('"' + a.name + '"');
+    }
+    bool beyond(double least, double most) const { return low < least - rounding || high > most + rounding; }
+};
+
+void refuse_elastic(const MovingFlat& moving, int elastic) {
+    const Elastic& e = moving.drawn.elastics[elastic];
+    Reach ratio{e.ratio, e.ratio};
+    for (const Alteration& a : moving.alterations)
+        for (const ElasticMove& m : a.elastics)
+            if (m.elastic == elastic) ratio.add(a, m.ratio);
+    if (ratio.beyond(least_ratio, 1))
+        throw std::invalid_argument(text("%s may make the elastic on edge %d of panel %s from %.4g to %.4g times as long as its cloth of %.4g mm, "
+                                         "expected %.4g to 1",
+                                         ratio.names.c_str(), e.span.edge, moving.drawn.panels[e.span.panel].name.c_str(), ratio.low,
+                                         ratio.high, 1e3 * length_at_rest(moving.drawn, e.span), least_ratio));
+}
+
+void refuse_shrink(const MovingFlat& moving, int panel, bool warp) {
+    const Panel& p = moving.drawn.panels[panel];
+    Reach shrink{p.shrink[warp], p.shrink[warp]};
+    for (const Alteration& a : moving.alterations)
+        for (const ShrinkMove& m : a.shrinks)
+            if (m.panel == panel) shrink.add(a, m.share[warp]);
+    if (shrink.beyond(-most_shrink, most_shrink))
+        throw std::invalid_argument(text("%s may shrink panel %s from %.4g to %.4g %% along its %s, expected %.4g to %.4g", shrink.names.c_str(),
+                                         p.name.c_str(), 100 * shrink.low, 100 * shrink.high, warp ? "warp" : "weft", -100 * most_shrink,
+                                         100 * most_shrink));
+}
+
 void refuse(const MovingFlat& moving, const VectorXd& start) {
     if (moving.alterations.empty()) throw std::invalid_argument("there is nothing to alter");
     for (std::size_t k = 0; k < moving.alterations.size(); ++k) {
         const Alteration& a = moving.alterations[k];
         const double at = start[Eigen::Index(k)];
         if (!(a.low < a.high))
-            throw std::invalid_argument(text("alteration \"%s\" has nowhere to go: its bounds are %.4g and %.4g mm", a.name.c_str(),
-                                             1e3 * a.low, 1e3 * a.high));
+            throw std::invalid_argument(text("alteration \"%s\" has nowhere to go: its bounds are %.4g and %.4g %s", a.name.c_str(),
+                                             in_unit(a, a.low), in_unit(a, a.high), unit_of(a)));
         if (!(at >= a.low && at <= a.high))
-            throw std::invalid_argument(text("alteration \"%s\" starts at %.4g mm, outside of its bounds %.4g and %.4g mm",
-                                             a.name.c_str(), 1e3 * at, 1e3 * a.low, 1e3 * a.high));
+            throw std::invalid_argument(text("alteration \"%s\" starts at %.4g %s, outside of its bounds %.4g and %.4g %s",
+                                             a.name.c_str(), in_unit(a, at), unit_of(a), in_unit(a, a.low), in_unit(a, a.high), unit_of(a)));
     }
+    for (int e = 0; e < int(moving.drawn.elastics.size()); ++e) refuse_elastic(moving, e);
+    for (int p = 0; p < int(moving.drawn.panels.size()); ++p)
+        for (const bool warp : {false, true}) refuse_shrink(moving, p, warp);
 }
 
 /// The seams that alterations can make unequal, those of them that have to be told to the optimiser, and that.
@@ -310,10 +399,9 @@ FitResult fit(AlteredDrape& drape, const std::vector<FitGoal>& goals, const Vect
     }
     r.rounds = std::min(r.rounds, options.max_rounds);
     for (const FitGoal& g : goals) r.after.push_back(miss(g, drape.garment_at(r.amounts), r.x));
-    const Pattern pattern = altered(moving.drawn, moving.alterations, r.amounts);
     std::string worst;
     for (const int s : stakes.all)
-        if (const double off = std::abs(seam_difference(moving.drawn, pattern, s)); off > r.unequal) {
+        if (const double off = std::abs(Seams{moving}.difference(s, r.amounts)); off > r.unequal) {
             r.unequal = off;
             worst = moving.drawn.seams[s].name;
         }

@@ -35,12 +35,12 @@ struct FitResult {
     FitEnd end = FitEnd::nearest;
     std::string why;         ///< a sentence; empty when met
     Optimiser optimiser = Optimiser::slsqp;
-    Eigen::VectorXd amounts; ///< m, one for every alteration
+    Eigen::VectorXd amounts; ///< one for every alteration
     Points x;                ///< at rest with them
     std::vector<double> before, after; ///< the miss of every goal
     std::vector<std::string> at_bounds; ///< alterations whose amount is at a bound
     int seams = 0;           ///< that alterations could make unequal
-    double unequal = 0;      ///< m, the largest difference of their sides, beyond their ease as drawn
+    double unequal = 0;      ///< m, the largest difference of their sides, beyond their ease as drawn and as asked for
     int evaluations = 0, not_at_rest = 0, rounds = 0;
     double seconds = 0;
 };
@@ -49,7 +49,7 @@ struct FitResult {
 double seam_difference(const Pattern& drawn, const Pattern& pattern, int seam);
 
 /// Throws what fit() would throw whatever the drape, before there is one: std::invalid_argument for bounds, a start outside of
-/// them, seams that leave nothing to alter, an optimiser that cannot keep them.
+/// them, elastics and shrunk cloth that no pattern can have within them, seams that leave nothing to alter, an optimiser that cannot keep them.
 void refuse_fit(const MovingFlat& moving, const Eigen::VectorXd& start, const FitOptions& options);
 
 /// From `start`, amounts within their bounds, at rest at drape.state. Throws as refuse_fit(), and std::runtime_error when a goal

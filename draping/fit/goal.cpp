@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 
 namespace toile {
 
@@ -134,14 +135,15 @@ Misses misses(const GirthGoal& goal, const Garment& g, const Points& x) {
 
 Misses misses(const StrainGoal& goal, const Garment& g, const Points& x) {
     Misses m;
-    double area = 0;
-    for (const int t : goal.triangles) area += rest_area(g.rest.edges[t]);
+    const std::vector<double> areas = rest_areas(g);
+    double area = 0; // of the goal's triangles
+    for (const int t : goal.triangles) area += areas[t];
     const int column = goal.warp ? 1 : 0;
     for (const int t : goal.triangles) {
         const Triangle n = g.nodes(t);
         const GrainShape shape = grain_shape(g.rest.edges[t]);
         const Vec3 yarn = grain_images(n, shape, x).col(column);
-        const double over = yarn.norm() - 1 - goal.most, share = rest_area(g.rest.edges[t]) / area;
+        const double over = yarn.norm() - 1 - goal.most, share = areas[t] / area;
         m.counts = std::max(m.counts, over);
         if (over <= 0) continue;
         m.square += share * over * over;
@@ -156,17 +158,13 @@ Misses misses(const FitGoal& goal, const Garment& garment, const Points& x) {
 
 double square_of(double v) { return v * v; }
 
-/// A third of every triangle's area to each of its corners, together `sum`.
-std::vector<double> corner_shares(int corners, const std::vector<Triangle>& triangles, const std::vector<double>& areas, double sum) {
-    std::vector<double> share(corners, 0.0);
-    double all = 0;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        for (const int n : triangles[t]) share[n] += areas[t] / 3;
-        all += areas[t];
-    }
-    for (double& s : share) s *= sum / all;
-    return share;
+/// Areas as weights that sum to `sum`.
+std::vector<double> shares(std::vector<double> areas, double whole, double sum) {
+    for (double& area : areas) area *= sum / whole;
+    return areas;
 }
+
+double total(const std::vector<double>& areas) { return std::accumulate(areas.begin(), areas.end(), 0.0); }
 
 } // namespace
 
@@ -185,9 +183,7 @@ void add_gradient(const std::vector<FitGoal>& goals, const Garment& garment, con
 }
 
 ShapeGoal shape_goal(const Garment& garment, Points target) {
-    std::vector<double> areas;
-    for (const Mat2& rest : garment.rest.edges) areas.push_back(rest_area(rest));
-    return {std::move(target), corner_shares(garment.node_count, node_triangles(garment), areas, 1)};
+    return {std::move(target), shares(node_areas(garment), total(rest_areas(garment)), 1)};
 }
 
 SurfaceGoal surface_goal(const Garment& garment, TriMesh target) {
@@ -196,7 +192,7 @@ SurfaceGoal surface_goal(const Garment& garment, TriMesh target) {
     SurfaceGoal goal;
     goal.share = shape_goal(garment, {}).share;
     for (double& share : goal.share) share /= 2;
-    goal.corners = corner_shares(int(target.points.size()), target.triangles, areas, 0.5);
+    goal.corners = shares(corner_areas(int(target.points.size()), target.triangles, areas), total(areas), 0.5);
     goal.tree = Bvh(triangle_boxes(target.points, target.triangles, 0));
     goal.target = std::move(target);
     return goal;

@@ -36,7 +36,7 @@ const std::string full = R"({
   "fabric": "poplin",
   "panels": {
     "front": {
-      "fabric": "denim", "grain": 45, "layer": 2,
+      "fabric": "denim", "grain": 45, "shrink": {"warp": 0.03}, "layer": 2,
       "holes": [{"vertices": [[100, 100], [150, 100], [100, 150]]},
                 {"vertices": [[300, 300], [340, 300]],
                  "edges": [{"endpoints": [0, 1], "curvature": {"type": "circle", "params": [20, 0, 1]}},
@@ -83,12 +83,14 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 } // namespace
 
-TEST_CASE("a companion gives fabric, grain and layer") {
+TEST_CASE("a companion gives fabric, grain, shrinkage and layer") {
     const Pattern p = with(full);
     CHECK(p.fabric == "poplin");
     CHECK(p.panels[0].fabric == "denim");
     CHECK(p.panels[0].grain == Approx(EIGEN_PI / 4));
+    CHECK(p.panels[0].shrink == Vec2(0, 0.03));
     CHECK(p.panels[0].layer == 2);
+    CHECK(p.panels[1].shrink == Vec2(0, 0));
     CHECK(p.panels[1].fabric.empty());
     CHECK(p.panels[1].grain == Approx(EIGEN_PI / 2));
     CHECK(p.panels[1].layer == 0);
@@ -179,6 +181,9 @@ TEST_CASE("what a companion gets wrong is named") {
                Contains("must be the label of an edge, but is \"waste\""));
     CHECK_THAT(refusal(replaced(full, "\"ratio\": 0.8", "\"ratio\": 1.8")),
                Contains("\"ratio\" must be a number from 0.05 to 1, but is 1.8"));
+    CHECK_THAT(refusal(replaced(full, "\"warp\": 0.03", "\"warp\": 3")),
+               Contains("panel \"front\", \"shrink\", \"warp\" must be a number from -0.5 to 0.5, but is 3"));
+    CHECK_THAT(refusal(replaced(full, "\"warp\": 0.03", "\"wrap\": 0.03")), Contains("unknown key \"wrap\""));
     CHECK_THAT(refusal(replaced(full, "\"kind\": \"fold\"", "\"kind\": \"crease\"")),
                Contains("must be \"fold\", \"pleat\" or \"cut\""));
     CHECK_THAT(refusal(replaced(full, "\"right_to_wrong\"", "\"wrong\"")),
@@ -221,6 +226,8 @@ TEST_CASE("the published schema accepts what is read and refuses what is refused
         {"\"layer\": 2", "\"layer\": 2.5"},
         {"\"grain\": 45", "\"grain\": \"bias\""},
         {"\"from\": 0.25", "\"from\": -0.25"},
+        {"\"warp\": 0.03", "\"warp\": 3"},
+        {"\"warp\": 0.03", "\"wrap\": 0.03"},
         {"\"ratio\": 0.8", "\"ratio\": 1.8"},
         {"\"ratio\": 0.8,", ""},
         {"\"stiffness\": 40", "\"stiffness\": 0"},

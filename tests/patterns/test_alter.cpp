@@ -2,6 +2,7 @@
 #include "patterns/alter.h"
 #include "patterns/check.h"
 #include "patterns/curve.h"
+#include "patterns/shrink.h"
 
 #include <catch2/catch.hpp>
 
@@ -77,6 +78,33 @@ TEST_CASE("what a cutter alters: lengths, darts, controls and the place of a sea
     const Pattern bent = by(pattern, {{{0, 2, 2}, {0, 1}}}, 0.1);
     CHECK(std::get<Cubic>(bent.panels[0].outline[2].curve).control1.y() == Approx(1.3));
     CHECK(bent.panels[0].outline[2].start == pattern.panels[0].outline[2].start);
+}
+
+TEST_CASE("rest lengths alter: a band grows by metres together, and cloth shrinks by shares") {
+    Pattern pattern = two_squares();
+    pattern.panels[1].shrink = {0.5, 0};
+    pattern.elastics = {{{0, 0, 0, 1}, 0.8, 50}, {{1, 0, 0.25, 0.75}, 0.6, 50}}; // on 1 m and on a quarter
+    Alteration band{"band", {}, -1, 1, lengthen_elastics(pattern, {0, 1})};
+    Alteration steam{"steam", {}, -1, 1};
+    steam.shrinks = {{0, {0, 1}}, {1, {-0.5, 0}}};
+    const auto relaxed = [](const Pattern& p) {
+        double sum = 0;
+        for (const Elastic& e : p.elastics) sum += e.ratio * length_at_rest(p, e.span);
+        return sum;
+    };
+    Pattern now = altered(pattern, {band, steam}, Eigen::Vector2d(-0.1, 0));
+    CHECK(relaxed(now) == Approx(relaxed(pattern) - 0.1));
+    CHECK(now.elastics[0].ratio == Approx(0.8 - 0.08));
+    CHECK(now.elastics[1].ratio == Approx(0.6 - 0.08));
+    CHECK(now.panels[0].shrink == Vec2(0, 0));
+    now = altered(pattern, {band, steam}, Eigen::Vector2d(0, 0.03));
+    CHECK(now.panels[0].shrink == Vec2(0, 0.03));
+    CHECK(now.panels[1].shrink.x() == Approx(0.485));
+    CHECK(now.elastics[0].ratio == 0.8);
+    // Bounds are reached, whatever rounding says.
+    CHECK(altered(pattern, {band, steam}, Eigen::Vector2d(1.25 * (1 - 0.8), 0)).elastics[0].ratio == 1);
+    CHECK_THROWS_WITH(altered(pattern, {{"x", {}, 0, 1, {{2, 1}}}}, Eigen::VectorXd::Zero(1)), "there is no elastic 2");
+    CHECK_THROWS_WITH(lengthen_elastics(pattern, {}), "an elastic on cloth of no length cannot be altered");
 }
 
 TEST_CASE("an alteration outside of the pattern is refused in a sentence") {

@@ -67,6 +67,28 @@ TEST_CASE("uv is the panel turned until its warp runs along y") {
     }
 }
 
+TEST_CASE("shrunk cloth rests shorter along its warp and weft, and seams to other cloth are eased") {
+    Pattern pattern = tube(0.3, 0.4);
+    const FlatLevel flat = flat_level(pattern, 0.05);
+    for (const double grain : {M_PI / 2, 0.6}) {
+        for (Panel& panel : pattern.panels) panel.grain = grain, panel.shrink = {0, 0};
+        const Garment cut = sew(pattern, flat);
+        pattern.panels[0].shrink = {-0.02, 0.05};
+        const Garment g = sew(pattern, flat);
+        for (std::size_t t = 0; t < g.triangles.size(); ++t) {
+            const bool front = g.panel_of_triangle[t] == 0;
+            const Vec2 share = front ? Vec2(1.02, 0.95) : Vec2(1, 1);
+            CHECK((g.rest.edges[t] - share.asDiagonal() * cut.rest.edges[t]).norm() < 1e-14);
+            CHECK((g.uv[g.triangles[t][1]] - g.uv[g.triangles[t][0]] - g.rest.edges[t].col(0)).norm() < 1e-15);
+        }
+        CHECK(std::count(cut.eased_triangle.begin(), cut.eased_triangle.end(), true) == 0);
+        CHECK(std::count(g.eased_triangle.begin(), g.eased_triangle.end(), true) > 0);
+        const std::vector<double> areas = rest_areas(g), nodes = node_areas(g);
+        CHECK(std::accumulate(areas.begin(), areas.end(), 0.0) == Approx(0.3 * 0.4 * (1 + 1.02 * 0.95)));
+        CHECK(std::accumulate(nodes.begin(), nodes.end(), 0.0) == Approx(0.3 * 0.4 * (1 + 1.02 * 0.95)));
+    }
+}
+
 TEST_CASE("an open garment has a node per vertex and stitches that stand for the whole seam") {
     Pattern pattern = tube(0.31, 0.4);
     pattern.panels[1].outline = rectangle("back", 0.31, 0.44).outline; // 10 % ease in both seams

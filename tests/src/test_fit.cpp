@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "geometry/text.h"
 #include "io/read_pattern.h"
+#include "io/write_file.h"
+#include "patterns/shrink.h"
 #include "tests/src/run.h"
 
 #include <catch2/catch.hpp>
@@ -81,6 +84,105 @@ TEST_CASE("fit: goals that contradict each other or are out of reach get the nea
     report = nearest(level_at(515, 1) + "," + level_at(535, 1));
     CHECK(report["status"] == "nearest");
     CHECK(report["goals"][0]["after"].get<double>() + report["goals"][1]["after"].get<double>() >= 0.0199);
+}
+
+TEST_CASE("fit: a band and steam are fitted, written beside the pattern, and draped from there") {
+    const TempFolder folder;
+    const std::string pattern = write_text(folder / "skirt.json", read_file(skirt, 1 << 20));
+    write_text(folder / "skirt.toile.json", R"({"toile": 1, "fabric": "jersey",
+        "elastics": [{"label": "lower_interface", "ratio": 1, "stiffness": 60}]})");
+    const std::string text = write_text(folder / "fit.json", R"({"alterations": [
+        {"name": "band", "elastic": "lower_interface", "low": -250, "high": 0},
+        {"name": "steam", "unit": "percent", "low": 0, "high": 8,
+         "moves": [{"panel": "front", "shrink": "warp"}, {"panel": "back", "shrink": "warp"}]}],
+        "goals": [{"name": "hem", "level": )" + hem_edges + R"(, "height": 560, "tolerance": 14}]})");
+    const Run r = run_toile({"fit", pattern, "--spec", text, "--edge-length", "60mm", "--json", "-o", folder / "new.json"});
+    CAPTURE(r.err);
+    REQUIRE(r.code == 0);
+    const auto report = nlohmann::json::parse(r.out);
+    CHECK(report["optimiser"] == "lbfgs");
+    CHECK(report["goals"][0]["before"] > 0.02);
+    CHECK(report["edges"].empty());
+    CHECK(report["seams"]["eased"].empty()); // both sides shrink
+    const double steam = report["alterations"][1]["percent"].get<double>();
+    CHECK(steam > 1);
+    const Pattern after = read_pattern(folder / "new.json");
+    CHECK(after.fabric == "jersey");
+    CHECK(after.panels[1].shrink.y() == Approx(steam / 100));
+    double relaxed = 0, said = 0;
+    for (const auto& e : report["elastics"]) said += e["relaxed_after_mm"].get<double>();
+    for (const Elastic& e : after.elastics) relaxed += e.ratio * length_at_rest(after, e.span);
+    CHECK(said == Approx(1e3 * relaxed));
+    const Run draped = run_toile({"drape", folder / "new.json", "--edge-length", "60mm", "--json"});
+    CHECK_THAT(draped.out, Contains(toile::text("elastic bands of %.1f cm relaxed", 100 * relaxed)));
+}
+
+TEST_CASE("fit: an elastic is put in where there was none, and the companion that says so is new") {
+    const TempFolder folder;
+    const std::string pattern = write_text(folder / "skirt.json", read_file(skirt, 1 << 20));
+    const std::string text = write_text(folder / "fit.json", R"({"alterations": [
+        {"name": "band", "panel": "back", "elastic": "lower_interface", "stiffness": 80, "unit": "percent", "low": -40, "high": 0, "start": -20}],
+        "goals": [{"name": "hem", "level": )" + hem_edges + R"(, "tolerance": 50}]})");
+    const Run r = run_toile({"fit", pattern, "--spec", text, "--edge-length", "60mm", "--json", "-o", folder / "new.json"});
+    CAPTURE(r.err);
+    REQUIRE(r.code == 0);
+    const Pattern after = read_pattern(folder / "new.json");
+    REQUIRE(after.elastics.size() == 3);
+    for (const Elastic& e : after.elastics) {
+        CHECK(e.span.panel == 1);
+        CHECK(e.stiffness == 80);
+        CHECK(e.ratio == Approx(1 + nlohmann::json::parse(r.out)["alterations"][0]["percent"].get<double>() / 100));
+    }
+}
+
+TEST_CASE("fit: a seam may be eased where that is asked for, and is no further") {
+    const TempFolder folder;
+    // A corner of the hem that one panel alone has: seam 0 joins edge 1 of the front, which it shortens, to the back's.
+    const std::string corner = R"({"name": "corner", "panel": "front", "vertex": 1, "direction": [0, 1], "low": -30, "high": 30})";
+    const std::string goal = R"(], "goals": [{"name": "hem", "level": [["front", 0]], "tolerance": 8}]})";
+    const std::string ease = R"(, {"name": "ease", "ease": 0, "low": -12, "high": 12})";
+    const Run r = run_toile(arguments(folder, R"({"alterations": [)" + corner + ease + goal));
+    CAPTURE(r.err);
+    const auto report = nlohmann::json::parse(r.out);
+    CHECK(report["goals"][0]["after"] < report["goals"][0]["before"]);
+    CHECK(report["seams"]["unequal_mm"] < 0.02);
+    const double eased = report["alterations"][1]["mm"];
+    CHECK(std::abs(eased) > 1);
+    CHECK(std::abs(eased) <= 12);
+    REQUIRE(report["seams"]["eased"].size() == 1);
+    const auto& seam = report["seams"]["eased"][0];
+    CHECK_THAT(seam["seam"].get<std::string>(), Contains("seam 0"));
+    CHECK(std::abs(seam["a_mm"].get<double>() - seam["b_mm"].get<double>()) == Approx(std::abs(eased)).margin(0.1));
+}
+
+TEST_CASE("fit: rest lengths that cannot be had are refused in a sentence") {
+    const TempFolder folder;
+    const std::string pattern = write_text(folder / "skirt.json", read_file(skirt, 1 << 20));
+    const auto refused = [&](const std::string& alterations, const std::string& why) {
+        const std::string text = write_text(folder / "fit.json", "{\"alterations\": [" + alterations + "], \"goals\": [" + level_at(520, 5) + "]}");
+        const Run r = run_toile({"fit", pattern, "--spec", text, "--edge-length", "60mm", "--json"});
+        CHECK(r.code == 2);
+        CHECK(one_sentence(r.err));
+        CHECK_THAT(r.err, Contains(why));
+    };
+    const std::string band = R"({"name": "band", "elastic": "lower_interface", "low": )";
+    refused(band + R"(-50, "high": 0})", "\"elastic\" must be where the companion file has an elastic");
+    write_text(folder / "skirt.toile.json", R"({"toile": 1, "elastics": [{"label": "lower_interface", "ratio": 0.9}]})");
+    refused(band + R"(-50, "high": 200})", "\"band\" may make the elastic on edge 3 of panel front from ");
+    refused(band + R"(-10, "high": 0, "unit": "percent"}, {"name": "more", "panel": "front", "elastic": 3, "low": -90, "high": 0, "unit": "percent"})",
+            "\"band\" and \"more\" may make the elastic on edge 3 of panel front from -0.1 to 0.9 times");
+    refused(R"({"name": "a", "panel": "front", "elastic": 2, "low": -1, "high": 0})", "must be where the companion file has an elastic");
+    refused(R"({"name": "a", "elastic": "waist", "low": -1, "high": 0})", "\"elastic\" must be the label of an edge, but is \"waist\"");
+    refused(band + R"(-9, "high": 0, "stiffness": 50})", "\"stiffness\" must be left out where there is an elastic already");
+    refused(R"({"name": "a", "elastic": 3, "low": -1, "high": 0})", "lacks the key \"panel\"");
+    refused(R"({"name": "a", "panel": "front", "shrink": "warp", "low": 0, "high": 3})", "needs \"unit\": \"percent\"");
+    refused(R"({"name": "a", "panel": "front", "shrink": "bias", "unit": "percent", "low": 0, "high": 3})", "\"warp\", \"weft\" or \"both\"");
+    refused(R"({"name": "a", "panel": "front", "shrink": "both", "unit": "percent", "low": 0, "high": 60})",
+            "\"a\" may shrink panel front from 0 to 60 % along its weft, expected -50 to 50");
+    refused(R"({"name": "a", "panel": "front", "vertex": 0, "direction": [0, 1], "unit": "percent", "low": 0, "high": 3})",
+            "outlines move by mm");
+    refused(band + R"(-5, "high": 0, "unit": "inch"})", "\"mm\" or \"percent\"");
+    refused(band + R"(-5, "high": 5, "start": 9})", "alteration \"band\" starts at 9 mm, outside of its bounds -5 and 5 mm");
 }
 
 TEST_CASE("fit: what cannot be used is refused in a sentence") {

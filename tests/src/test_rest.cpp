@@ -131,3 +131,24 @@ TEST_CASE("rest: data that cannot be used are refused in a sentence") {
     CHECK(run_toile({"rest", shape, "--json", "--fabric", "poplin", "--length-weight", "1"}).code == 1);
     CHECK(run_toile({"rest", folder / "none.obj", "--json"}).code == 2);
 }
+
+TEST_CASE("rest: a fabric of one's own weighs as the preset of the same figures does, and is refused as in a drape") {
+    const TempFolder folder;
+    const std::string shape = folder / "four.obj", data = folder / "data.json", fabric = folder / "mine.json";
+    write_file(shape, four);
+    write_file(data, square(1.1, 30));
+    const auto energy = [&](const std::string& name) {
+        const auto r = report_of({"rest", shape, "--data", data, "--fabric", name, "--json"});
+        return std::pair(r["weights"]["fabric"].get<std::string>(), r["states"][0]["energy"].get<double>());
+    };
+    write_file(fabric, R"({"toile_fabric": 1, "name": "mine", "like": "denim"})");
+    CHECK(energy(fabric) == std::pair(std::string("mine"), energy("denim").second));
+    write_file(fabric, R"({"toile_fabric": 1, "name": "mine", "like": "denim", "stretch_warp": 1000})");
+    CHECK(energy(fabric).second < 0.9 * energy("denim").second);
+
+    CHECK(run_toile({"rest", shape, "--fabric", fabric, "--report", fabric}).code == 2); // would be written over
+    write_file(fabric, R"({"toile_fabric": 1, "name": "mine", "like": "denim", "stretchy": 1})");
+    const Run r = run_toile({"rest", shape, "--fabric", fabric, "--json"});
+    CHECK(r.code == 2);
+    CHECK_THAT(r.err, Contains("mine.json") && Contains("stretchy"));
+}

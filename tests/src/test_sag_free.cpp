@@ -55,6 +55,15 @@ TEST_CASE("rest sag-free: with what is written the shape is in balance") {
     CHECK_THAT(run_toile({"rest", dome, "--sag-free", "--hold", "borders", "--fabric", "denim", "--rest", rest + ".dome"}).out,
                Contains("not stable"));
 
+    const std::string mine = folder / "mine.json";
+    write_file(mine, R"({"toile_fabric": 1, "name": "mine", "like": "denim", "density": )" +
+                         std::to_string(2 * fabric_preset("denim").density) + "}");
+    const Run own = run_toile({"rest", shape, "--sag-free", "--hold", "borders", "--fabric", mine, "--json"});
+    REQUIRE(own.code == 0);
+    const auto heavy = nlohmann::json::parse(own.out);
+    CHECK(heavy["fabric"] == "mine");
+    CHECK(heavy["weight"].get<double>() == Approx(2 * report["weight"].get<double>()));
+
     const ReadGarment read = read_garment(shape);
     Prescribed data = measured(node_triangles(read.garment), read.x);
     std::vector<int> same(read.x.size());

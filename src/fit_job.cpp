@@ -27,7 +27,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double fit_tolerance = 1e-7; // residual of equilibria
-constexpr double least_ease = 1e-4;    // m of a seam, that is told of
+constexpr double least_ease = 5e-4;    // m of a seam, that can be measured
 
 FitGoal shape_goal_of(const GoalSpec& spec, const DrapeResult& drape) {
     const ReadGarment read = read_garment(spec.file);

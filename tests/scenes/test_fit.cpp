@@ -65,13 +65,13 @@ struct WrongSkirt {
     }
 };
 
-/// A skirt with a band of elastic round its waist, whose front is shrunk a little.
-Pattern banded_skirt() {
+/// A skirt with elastic along edges, whose front is shrunk a little.
+template <class Which> Pattern banded_skirt(double ratio, Which&& has_band) {
     Pattern p = example_pattern("skirt");
     for (int panel = 0; panel < int(p.panels.size()); ++panel)
         for (int e = 0; e < int(p.panels[panel].outline.size()); ++e)
-            if (p.panels[panel].outline[e].label == "lower_interface") p.elastics.push_back({{panel, e, 0, 1}, 0.97, 20});
-    REQUIRE(p.elastics.size() >= 2);
+            if (has_band(p.panels[panel].outline[e].label, e)) p.elastics.push_back({{panel, e, 0, 1}, ratio, 20});
+    REQUIRE(p.elastics.size() >= 4);
     p.panels[0].shrink = {0.01, 0.02};
     return p;
 }
@@ -130,12 +130,13 @@ TEST_CASE("the adjoint gradient is that of the drape: skirt and tee, with contac
 }
 
 TEST_CASE("the adjoint gradient is that of the drape by rest lengths: elastics and shrunk cloth") {
-    const Pattern skirt = banded_skirt();
+    const Pattern skirt = banded_skirt(0.97, [](const std::string& label, int) { return label == "lower_interface"; });
     check_gradient(skirt, of_the_bands(skirt));
 }
 
 TEST_CASE("an elastic and shrunk cloth are found again from their drape") {
-    const Pattern pattern = banded_skirt();
+    // In the hem, where a band has nothing but cloth to hold.
+    const Pattern pattern = banded_skirt(0.9, [](const std::string&, int edge) { return edge == 0 || edge == 12; });
     std::vector<Alteration> all = of_the_bands(pattern);
     all.resize(4); // without outlines
     all.erase(all.begin() + 1); // part of the band does nearly what the whole does
@@ -149,7 +150,7 @@ TEST_CASE("an elastic and shrunk cloth are found again from their drape") {
     const Points& target = s.drape.state.positions;
     FitOptions options;
     options.begin = [&](const Eigen::VectorXd&) { return target; };
-    const std::vector<FitGoal> goals{{"shape", shape_goal(before.garment, target), 2e-4}};
+    const std::vector<FitGoal> goals{{"shape", shape_goal(before.garment, target), 1e-4}};
     const FitResult r = fit(altered_drape, goals, wrong, target, options);
     INFO(r.why);
     INFO(r.amounts.transpose());

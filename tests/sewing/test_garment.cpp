@@ -82,7 +82,8 @@ TEST_CASE("shrunk cloth rests shorter along its warp and weft, and seams to othe
             CHECK((g.uv[g.triangles[t][1]] - g.uv[g.triangles[t][0]] - g.rest.edges[t].col(0)).norm() < 1e-15);
         }
         CHECK(std::count(cut.eased_triangle.begin(), cut.eased_triangle.end(), true) == 0);
-        CHECK(std::count(g.eased_triangle.begin(), g.eased_triangle.end(), true) > 0);
+        const bool along = grain != 0.6; // on the bias the seam stays nearly as long
+        CHECK((std::count(g.eased_triangle.begin(), g.eased_triangle.end(), true) > 0) == along);
         const std::vector<double> areas = rest_areas(g), nodes = node_areas(g);
         CHECK(std::accumulate(areas.begin(), areas.end(), 0.0) == Approx(0.3 * 0.4 * (1 + 1.02 * 0.95)));
         CHECK(std::accumulate(nodes.begin(), nodes.end(), 0.0) == Approx(0.3 * 0.4 * (1 + 1.02 * 0.95)));

@@ -233,13 +233,4 @@ inline Term model_term(const std::shared_ptr<const Energy>& model, int nodes) {
             }};
 }
 
-/// A third of the area of the triangles around every node.
-inline std::vector<double> node_areas(const Garment& garment) {
-    std::vector<double> areas(garment.node_count, 0);
-    for (int t = 0; t < int(garment.triangles.size()); ++t)
-        for (int node : garment.nodes(t))
-            areas[node] += std::abs(garment.rest.edges[t].determinant()) / 6;
-    return areas;
-}
-
 } // namespace toile::test

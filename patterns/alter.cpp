@@ -123,7 +123,8 @@ Pattern altered(const Pattern& pattern, const std::vector<Alteration>& alteratio
 }
 
 std::vector<OutlineMove> lengthen_edge(const Pattern& pattern, int panel, int edge) {
-    return {{{panel, next(pattern, panel, edge), 0}, direction_of(pattern, panel, edge)}};
+    const Vec2 along = direction_of(pattern, panel, edge); // first: it refuses what does not exist
+    return {{{panel, next(pattern, panel, edge), 0}, along}};
 }
 
 std::vector<OutlineMove> move_edge(const Pattern& pattern, int panel, int edge) {

@@ -164,7 +164,7 @@ TEST_CASE("every method drapes, says what it is, and what it did not reach", "[m
     for (const Method method : all_methods()) {
         const std::string name = to_string(method);
         INFO(name);
-        const Run r = run_toile({"drape", tee, "--edge-length", "60mm", "--method", name, "--max-seconds", "3s", "--json"});
+        const Run r = run_toile({"drape", tee, "--edge-length", "60mm", "--method", name, "--max-seconds", "12s", "--json"});
         const auto report = nlohmann::json::parse(r.out);
         CHECK(schema.complaints(r.out) == "");
         CHECK(report["method"] == name);

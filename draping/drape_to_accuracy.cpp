@@ -91,12 +91,12 @@ Staging mesh_for(const AccuracyRun& run, double edge_length) {
     return run.accuracy.mesh(o.most, [&](int panel, const Vec2& at) { return edge(panel, at) / o.most; });
 }
 
-void decide_graded(AccuracyRun& run, double edge_length, double most, int vertices) {
+void decide_graded(AccuracyRun& run, double edge_length, int vertices) {
     const std::vector<double> areas = rest_areas(run.result.garment);
     const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
     const double uniform = area / (std::sqrt(3.0) / 2 * edge_length * edge_length);
     run.decide(text("edges of %.3g mm on the %.0f %% of the cloth that is curved most, and up to %.3g mm elsewhere", 1e3 * edge_length,
-                    100 * curved_most, 1e3 * most),
+                    100 * curved_most, 1e3 * run.mesh(0).edge_length),
                "vertices over those of equal triangles everywhere", vertices / uniform);
 }
 
@@ -109,7 +109,6 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
     o.progress = part_of_meshes(run);
     o.max_seconds = std::min(o.max_seconds - run.seconds(), run.seconds_left());
     const bool goes_on = at_rest(run);
-    const std::optional<double> graded_to = may_grade(run) ? std::optional(run.mesh(0).edge_length) : std::nullopt;
     if (goes_on) o.from = carried(run, staging);
     DrapeResult now = drape(staging, run.avatar, run.fabrics, o);
     if (goes_on && now.status == DrapeStatus::limit && run.seconds_left() <= 0) {
@@ -126,7 +125,7 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
     mesh.motion = std::isfinite(now.last_step) ? now.last_step : 0; // at rest from the start
     for (const LevelReport& level : now.levels) mesh.iterations += level.iterations;
     mesh.seconds = std::chrono::duration<double>(AccuracyRun::Clock::now() - start).count();
-    if (graded_to) decide_graded(run, edge_length, *graded_to, mesh.vertices);
+    if (may_grade(run)) decide_graded(run, edge_length, mesh.vertices);
     if (goes_on) mesh.difference = compare(surface(run.result), surface(now)).rms;
     run.result = run.meshes() > 0 ? joined(std::move(run.result), std::move(now)) : std::move(now);
     run.report.meshes.push_back(mesh);

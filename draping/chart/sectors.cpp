@@ -91,7 +91,6 @@ double cusick_percent(double c, double angle) { return 35.6 * c - 3.61 * c * c -
 constexpr double least_buckling = 10, most_buckling = 28; // degrees; the fit turns round beyond
 constexpr double repeats = 5;                             // percent by which the same cloth comes out otherwise when it is laid anew
 
-
 Band cusick_band(const Fabric& f) {
     const auto length = [&f](double bend) { return 100 * std::cbrt(bend / (f.density * scene_gravity)); };
     const double c = (length(f.bend_warp) + length(f.bend_weft)) / 2;
@@ -136,7 +135,6 @@ Scene cone() {
     };
     return s;
 }
-
 
 Scene cusick_disc() {
     Scene s;

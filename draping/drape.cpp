@@ -3,6 +3,8 @@
 
 #include "draping/animate.h"
 #include "draping/hooks.h"
+#include "draping/joined.h"
+#include "draping/pull_shut.h"
 #include "draping/settle_level.h"
 #include "draping/sew_up.h"
 #include "draping/take_apart.h"
@@ -172,34 +174,8 @@ void sew_and_drape(DrapeRun& run) {
     if (is_animated(run.options) && run.last_level() && !run.stopped) animate(run);
 }
 
-} // namespace
-
-TriMesh surface(const DrapeResult& r) { return {r.state.positions, node_triangles(r.garment)}; }
-
-const char* to_string(DrapeStatus s) {
-    switch (s) {
-    case DrapeStatus::converged: return "converged";
-    case DrapeStatus::animated: return "animated";
-    case DrapeStatus::stalled: return "stalled";
-    case DrapeStatus::limit: return "limit";
-    case DrapeStatus::too_small: return "too_small";
-    case DrapeStatus::slid_off: return "slid_off";
-    }
-    return "stalled";
-}
-
-ContactResponse response_of(const DrapeOptions& o) {
-    const ContactResponse response = o.contact.value_or(is_animated(o) ? ContactResponse::impulse : ContactResponse::barrier);
-    if (is_animated(o) && response == ContactResponse::barrier)
-        throw std::invalid_argument("an animation moves cloth in time, which the contact barrier cannot answer: it needs "
-                                    "constraint, penalty, impulse or rigid");
-    return response;
-}
-
-bool moves(const DrapeOptions& o) { return !settles(o.method) || response_of(o) != ContactResponse::barrier; }
-
-DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabrics& fabrics,
-                  const DrapeOptions& options) {
+/// From its coarsest level on.
+DrapeResult drape_from_coarsest(const Staging& staging, const Avatar& avatar, const PanelFabrics& fabrics, const DrapeOptions& options) {
     DrapeRun run{.staging = staging, .avatar = avatar.body, .fabrics = fabrics, .options = options};
     run.result.residual = run.result.last_step = std::numeric_limits<double>::infinity();
     run.result.method = run.facts.method = options.method;
@@ -230,6 +206,65 @@ DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabri
     run.result.garment = std::move(run.garment);
     run.result.state.positions = std::move(run.x);
     return std::move(run.result);
+}
+
+/// Whether triangles that were too coarse to be sewn, or to fold as the cloth has to, may have kept a drape from coming to
+/// rest. What is too small counts when a seam stayed open: its cloth may have caught on what it would have passed.
+bool coarsest_may_be_to_blame(const Staging& staging, const DrapeResult& r) {
+    const bool sewn = r.levels[0].edge_length == staging.levels[0].edge_length; // and not taken up from an earlier drape
+    const bool open = seam_gap_max(r.garment, r.state.positions) >= weld_gap;
+    return staging.levels.size() > 1 && sewn &&
+           (r.status == DrapeStatus::stalled || (r.status == DrapeStatus::too_small && open));
+}
+
+} // namespace
+
+TriMesh surface(const DrapeResult& r) { return {r.state.positions, node_triangles(r.garment)}; }
+
+const char* to_string(DrapeStatus s) {
+    switch (s) {
+    case DrapeStatus::converged: return "converged";
+    case DrapeStatus::animated: return "animated";
+    case DrapeStatus::stalled: return "stalled";
+    case DrapeStatus::limit: return "limit";
+    case DrapeStatus::too_small: return "too_small";
+    case DrapeStatus::slid_off: return "slid_off";
+    }
+    return "stalled";
+}
+
+ContactResponse response_of(const DrapeOptions& o) {
+    const ContactResponse response = o.contact.value_or(is_animated(o) ? ContactResponse::impulse : ContactResponse::barrier);
+    if (is_animated(o) && response == ContactResponse::barrier)
+        throw std::invalid_argument("an animation moves cloth in time, which the contact barrier cannot answer: it needs "
+                                    "constraint, penalty, impulse or rigid");
+    return response;
+}
+
+bool moves(const DrapeOptions& o) { return !settles(o.method) || response_of(o) != ContactResponse::barrier; }
+
+DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabrics& fabrics,
+                  const DrapeOptions& options) {
+    const auto start = DrapeRun::Clock::now();
+    double done = 0;
+    DrapeOptions o = options;
+    if (options.progress) o.progress = [&](const DrapeProgress& p) { return done = p.done, options.progress(p); };
+    DrapeResult result = drape_from_coarsest(staging, avatar, fabrics, o);
+    if (!coarsest_may_be_to_blame(staging, result)) return result;
+    o.max_seconds -= DrapeRun::seconds_since(start);
+    if (options.progress)
+        o.progress = [&options, before = done](DrapeProgress p) {
+            p.done = before + (1 - before) * p.done;
+            return options.progress(p);
+        };
+    const Staging finer = without_coarsest(staging);
+    DrapeResult again = drape_from_coarsest(finer, avatar, fabrics, o);
+    if (again.status == DrapeStatus::limit) return result;
+    again.decisions.insert(again.decisions.begin(),
+                           text("the garment was sewn anew on a mesh of %.3g mm; with one of %.3g mm it was %s: %s",
+                                1e3 * finer.levels[0].edge_length, 1e3 * staging.levels[0].edge_length, to_string(result.status),
+                                result.where.c_str()));
+    return joined(std::move(result), std::move(again));
 }
 
 DrapeResult drape(const Pattern& pattern, const FlatPattern& flat, const Avatar& avatar, const PanelFabrics& fabrics,

@@ -4,6 +4,7 @@
 #include "draping/carry_drape.h"
 #include "draping/compare.h"
 #include "draping/grade.h"
+#include "draping/joined.h"
 #include "geometry/text.h"
 
 #include <algorithm>
@@ -57,13 +58,6 @@ std::function<bool(const DrapeProgress&)> part_of_meshes(const AccuracyRun& run)
         p.seconds_left = std::numeric_limits<double>::infinity();
         return tell(p);
     };
-}
-
-DrapeResult joined(DrapeResult before, DrapeResult now) {
-    now.levels.insert(now.levels.begin(), before.levels.begin(), before.levels.end());
-    now.seconds.insert(now.seconds.begin(), before.seconds.begin(), before.seconds.end());
-    now.contact.seconds += before.contact.seconds;
-    return now;
 }
 
 Points carried(const AccuracyRun& run, const Staging& staging) {

@@ -7,6 +7,7 @@
 #include "geometry/distance.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -272,11 +273,10 @@ struct Obstacle {
     }
 };
 
-/// Metres of open seam whose threads pass through the body once the garment is moved.
-double blocked_seam(const Garment& garment, const Points& x, const Obstacle& obstacle, const Vec3& move) {
-    double blocked = 0;
-    for (const Stitch& s : garment.stitches)
-        if (obstacle.in_the_way(x[s.a] + move, seam_point(s, x) + move)) blocked += s.length;
+/// Which stitches' threads pass through the body once the garment is moved.
+std::vector<char> blocked_threads(const Garment& garment, const Points& x, const Obstacle& obstacle, const Vec3& move) {
+    std::vector<char> blocked;
+    for (const Stitch& s : garment.stitches) blocked.push_back(obstacle.in_the_way(x[s.a] + move, seam_point(s, x) + move));
     return blocked;
 }
 
@@ -284,10 +284,22 @@ double blocked_seam(const Garment& garment, const Points& x, const Obstacle& obs
 
 double free_height(const Garment& garment, const Points& x, const TriMesh& body) {
     const Obstacle obstacle{body};
-    double best = 0, least = blocked_seam(garment, x, obstacle, Vec3::Zero());
+    const std::vector<char> at_first = blocked_threads(garment, x, obstacle, Vec3::Zero());
+    std::array<std::vector<char>, 2> passed; // threads free at first that went into the body on the way up, on the way down
+    passed.fill(std::vector<char>(at_first.size(), 0));
+    const auto length = [&](const std::vector<char>& blocked, const std::vector<char>& gone) {
+        double sum = 0;
+        for (std::size_t k = 0; k < blocked.size(); ++k)
+            if (blocked[k] || gone[k]) sum += garment.stitches[k].length;
+        return sum;
+    };
+    double best = 0, least = length(at_first, passed[0]);
     for (int k = 1; k * height_step <= highest; ++k)
-        for (const double height : {k * height_step, -k * height_step}) {
-            const double blocked = blocked_seam(garment, x, obstacle, {0, height, 0});
+        for (int down = 0; down < 2; ++down) {
+            const double height = (down ? -k : k) * height_step;
+            const std::vector<char> now = blocked_threads(garment, x, obstacle, {0, height, 0});
+            for (std::size_t s = 0; s < now.size(); ++s) passed[down][s] |= now[s] && !at_first[s];
+            const double blocked = length(now, passed[down]);
             if (blocked > least - height_gain * (std::abs(height) - std::abs(best))) continue;
             least = blocked;
             best = height;

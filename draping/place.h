@@ -44,7 +44,8 @@ std::vector<char> seams_through_body(const Garment& garment, const Points& x, co
 /// How far, in metres, the garment as a whole should be moved up (or, negative, down), within 20 cm, that
 /// fewer threads of its open seams pass through the body: shoulder seams that must close above the shoulder,
 /// inner leg seams that must close below the crotch. 0 where moving frees less than two metres of seam per
-/// metre.
+/// metre. A thread that is free at first and goes into the body on the way counts as if it stayed there: beyond it the
+/// seam would be on the wrong side, a shoulder below the arm.
 double free_height(const Garment& garment, const Points& x, const TriMesh& body);
 
 } // namespace toile

@@ -63,13 +63,15 @@ double close_open_seams(DrapeRun& run, const Garment& open, ClothProblem& proble
         // at all, something is in the way.
         const double mean = mean_gap(open, x);
         locked = std::min(gap / last, mean / last_mean) > 0.995 ? locked + 1 : 0;
-        if (locked == 4) return gap;
-        if (gap > 0.95 * last) {
-            if (cap_scale > most_pull && mean > 0.95 * last_mean) return gap;
-            if (cap_scale <= most_pull) {
-                cap_scale *= 1.5;
-                for (auto& s : problem.stitches) s.cap *= 1.5;
-            }
+        const bool all_pull = cap_scale > most_pull && mean > 0.95 * last_mean && gap > 0.95 * last;
+        if (locked == 4 || all_pull) { // hooks may hold the cloth where its seam does not reach
+            if (problem.hooks.empty()) return gap;
+            problem.hooks.clear();
+            locked = 0;
+        }
+        if (gap > 0.95 * last && cap_scale <= most_pull) {
+            cap_scale *= 1.5;
+            for (auto& s : problem.stitches) s.cap *= 1.5;
         }
         last = gap;
         last_mean = mean;

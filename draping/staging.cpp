@@ -95,6 +95,13 @@ Staging stage(Garment garment, Points placed, std::vector<Pin> pins, std::vector
     return s;
 }
 
+Staging without_coarsest(const Staging& staging) {
+    Staging finer = staging;
+    finer.levels.erase(finer.levels.begin());
+    finer.prolongation.erase(finer.prolongation.begin());
+    return finer;
+}
+
 std::vector<std::pair<int, Vec3>> pinned_places(const Staging& staging, int level, const Garment& garment) {
     const StagedLevel& staged = staging.levels[level];
     std::map<int, std::pair<Vec3, int>> sum;

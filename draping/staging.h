@@ -30,6 +30,9 @@ Staging stage(const Pattern& pattern, const FlatPattern& flat);
 /// One level that is meshed and placed already. Spans go along its border lines.
 Staging stage(Garment garment, Points placed, std::vector<Pin> pins, std::vector<Elastic> elastics);
 
+/// The same from the next finer level on. At least two levels.
+Staging without_coarsest(const Staging& staging);
+
 /// Where pinned nodes of a garment of level `level` are held, by node, ascending. `garment` may have its seams
 /// closed: a node of several pinned vertices is held at their mean.
 std::vector<std::pair<int, Vec3>> pinned_places(const Staging& staging, int level, const Garment& garment);

@@ -351,7 +351,8 @@ private:
         if (!(l.ease > options_.note_ease)) return;
         const std::string text =
             name + " joins " + said(l.a) + " to " + said(l.b) + ", an ease of " + percent(l.ease);
-        if (l.ease > options_.max_ease)
+        const bool slight = std::isfinite(l.ease) && std::abs(l.a - l.b) < options_.no_error;
+        if (l.ease > options_.max_ease && !slight)
             error(text + "; at most " + percent(options_.max_ease) + " was expected");
         else if (l.ease > options_.warn_ease)
             warn(text);

@@ -20,7 +20,8 @@ struct SeamLengths {
 };
 
 struct CheckOptions {
-    double max_ease = 3;      ///< ratio - 1 above which a seam is an error (2.6 : 1 occurs in real gathers)
+    double max_ease = 3;      ///< ratio - 1 above which a seam is an error (2.6 : 1 occurs in real gathers),
+    double no_error = 0.01;   ///< m, unless its sides differ by less: generators leave millimetres beside a millimetre
     double warn_ease = 0.5;   ///< above this a warning
     double note_ease = 0.1;   ///< above this a note: gathers are a design, not a fault
     double min_edge = 1e-4;   ///< metres; a shorter edge is degenerate

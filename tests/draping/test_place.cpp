@@ -179,6 +179,27 @@ TEST_CASE("panels that share nodes are pushed as one") {
     CHECK(push_of(placed, 0) == push_of(placed, 1));
 }
 
+TEST_CASE("a seam is not moved through the body to the other side of it") {
+    // A ball in the way of a long seam, and a smaller one under a short seam. 6 cm down both seams are free, the short one below
+    // its ball; 3 cm down the long one is.
+    TriMesh body = sphere(0.02, 3);
+    const int points = int(body.points.size());
+    for (int i = 0; i < points; ++i) body.points.push_back(body.points[i] + Vec3(0, -0.07, 0));
+    for (const Triangle& t : std::vector<Triangle>(body.triangles)) body.triangles.push_back({t[0] + points, t[1] + points, t[2] + points});
+    Cloth c;
+    for (const double z : {0.2, -0.2}) add_front(c, {0, -0.01, z});
+    const auto sew = [&](int row, double length) {
+        const int a = 11 * row + 5;
+        c.garment.stitches.push_back({a, {a + 121, a + 121}, 0, 0, length});
+    };
+    sew(0, 1); // at -11 cm, free
+    sew(2, 1); // at -7 cm, in the way
+    sew(7, 0.5); // at 3 cm, free
+    CHECK(free_height(c.garment, c.x, body) == Approx(-0.03));
+    c.garment.stitches.pop_back();
+    CHECK(free_height(c.garment, c.x, body) == Approx(-0.03));
+}
+
 TEST_CASE("a garment moves up as a whole where its seams can close over the body, and only there") {
     // Front and back that end 3 cm below the top of a ball and are to be sewn together there.
     const auto height_of = [](double top) {

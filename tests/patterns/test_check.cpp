@@ -222,6 +222,12 @@ TEST_CASE("unequal lengths are a note, a warning or an error by their ease") {
     CHECK(says(issues(p, Severity::warning), {"Seam 0", "100 %"}));
     set(0.2);
     CHECK(says(issues(p), {"Seam 0", "10 cm", "50 cm", "400 %", "300 %"}));
+    p.seams[0].b[0].t0 = 1 - 0.018; // 2 mm to 9 mm: nothing that cloth would mind
+    p.seams[0].a[0].t1 = 0.004;
+    CHECK(issues(p).empty());
+    CHECK(says(issues(p, Severity::warning), {"Seam 0", "350 %"}));
+    p.seams[0].a[0].t1 = 0.08;
+    CHECK(says(issues(p), {"Seam 0", "344 %", "300 %"}));
 }
 
 TEST_CASE("seam lengths add up over the spans of a side") {

@@ -17,6 +17,8 @@ std::string contact_sentence(const DrapeFacts& f) {
         return text("contact of the cloth with itself, and of edges with the body, was left out by the response that was "
                     "asked for: at the end %d pairs of cloth are within %.3g mm of each other",
                     f.touch.cloth_pairs, 1e3 * f.clearance);
+    if (!f.self_contact)
+        return "contact of the cloth with itself was left out, since by its shape it cannot touch itself";
     return text("contact of the cloth with itself was modelled: at the end %d pairs are within %.3g mm of "
                 "each other",
                 f.touch.cloth_pairs, 1e3 * f.clearance);

@@ -38,6 +38,7 @@ struct DrapeFacts {
     bool projected = true;             ///< MethodOptions::projected
     std::optional<double> kept_strain; ///< as the method's stepper tells it
     ContactReport contact;
+    bool self_contact = true;        ///< DrapeOptions::self_contact
     std::optional<MotionReport> motion; ///< of an animation
     FrictionCoefficients friction;
     double clearance = 0;            ///< m

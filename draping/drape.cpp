@@ -130,25 +130,37 @@ void decide(DrapeRun& run) {
     run.result.decisions.insert(run.result.decisions.end(), all.begin(), all.end());
 }
 
-/// Starts from the earlier drape, unless the edit since then makes its cloth cross itself.
-bool start_again(DrapeRun& run) {
-    if (run.options.from.empty()) return false;
-    const Garment closed = close_seams(run.staging.levels.back().garment);
-    const int pairs =
-        count_intersections(node_triangles(closed), run.options.from, {}, closed.stitches).cloth_cloth;
-    if (pairs > 0) {
-        run.result.decisions.push_back(text("the earlier drape was not taken as a start: after the edit %d pairs of "
-                                            "its triangles would cross",
-                                            pairs));
-        return false;
-    }
+/// Begins the last level with the earlier drape.
+void take_up(DrapeRun& run, Garment closed) {
     run.level = run.levels() - 1;
     choose_hooks(run);
-    run.garment = closed;
+    run.garment = std::move(closed);
     run.x = run.options.from;
-    run.facts.restarted = true;
-    run.result.levels.push_back({run.edge_length(), int(closed.uv.size()), 0, 0, 0});
     choose_body(run);
+}
+
+/// Starts from the earlier drape, unless its cloth crosses itself on the new mesh and does not come apart.
+bool start_again(DrapeRun& run) {
+    if (run.options.from.empty()) return false;
+    Garment closed = close_seams(run.staging.levels.back().garment);
+    const int pairs = count_intersections(node_triangles(closed), run.options.from, {}, closed.stitches).cloth_cloth;
+    Points apart;
+    if (pairs > 0) {
+        DrapeRun trial = run;
+        take_up(trial, closed);
+        Contact contact(contact_cloth(closed), trial.body, trial.contact_options());
+        if (!take_apart_or_leave_out(trial, contact)) {
+            run.result.decisions.push_back(text("the earlier drape was not taken as a start: %d pairs of its triangles would "
+                                                "cross after the edit, and did not come apart", pairs));
+            return false;
+        }
+        apart = std::move(trial.x);
+        run.facts.untangled = trial.facts.untangled;
+    }
+    take_up(run, std::move(closed));
+    if (pairs > 0) run.x = std::move(apart);
+    run.facts.restarted = true;
+    run.result.levels.push_back({run.edge_length(), int(run.garment.uv.size()), 0, 0, 0});
     if (!run.fits_memory(run.level)) return true;
     if (is_animated(run.options))
         animate(run);
@@ -180,6 +192,7 @@ DrapeResult drape_from_coarsest(const Staging& staging, const Avatar& avatar, co
     run.result.residual = run.result.last_step = std::numeric_limits<double>::infinity();
     run.result.method = run.facts.method = options.method;
     run.facts.projected = options.method_options.projected;
+    run.facts.self_contact = options.self_contact;
     run.result.contact.response = response_of(options);
     run.result.tolerance = options.tolerance;
     run.result.friction = {options.friction, options.cloth_friction};

@@ -49,6 +49,7 @@ struct DrapeOptions {
     Method method = Method::equilibrium;
     MethodOptions method_options;
     std::optional<ContactResponse> contact;
+    bool self_contact = true;       ///< of the cloth with itself once it is sewn; without it, cloth may cross itself
     AnimateOptions animation;
     int max_iterations = 5000;      ///< Newton iterations, or four steps of a motion each, on all levels together
     double max_seconds = 1e9;       ///< wall time after which the state reached is returned with status limit

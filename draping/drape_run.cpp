@@ -117,7 +117,9 @@ PanelFabrics DrapeRun::level_fabrics() const {
 ContactOptions DrapeRun::contact_options() const {
     const double distance =
         last_level() ? options.clearance : std::max(options.clearance, contact_share * edge_length());
-    return barriers_at(distance, std::max(0.05, density));
+    ContactOptions o = barriers_at(distance, std::max(0.05, density));
+    o.self = options.self_contact;
+    return o;
 }
 
 std::vector<std::string> all_hooked(const DrapeRun& run) {

@@ -3,6 +3,7 @@
 
 #include "draping/carry_drape.h"
 #include "draping/compare.h"
+#include "draping/contact/self_touch.h"
 #include "draping/grade.h"
 #include "draping/joined.h"
 #include "geometry/text.h"
@@ -24,6 +25,7 @@ constexpr double most_finer = 0.5;
 constexpr double curved_most = 0.3;        // of the area: with a tenth, errors grew more than vertices went
 constexpr double aim = 0.7;                // of what is asked: estimates are off by about as much
 constexpr double share_of_residual = 0.1;  // of the error asked for, that iterations may leave
+constexpr double travel = 2;               // of the error asked for: by which cloth may go on from one mesh to the next
 constexpr double left_over_step = 10;      // what was left to rest over the last step at a residual below 1: 2 to 10 were seen
 
 /// What the loop over meshes has come to.
@@ -37,6 +39,9 @@ struct AccuracyRun {
     DrapeResult result = {};
     AccuracyReport report = {};
     std::size_t edge_decision = 0; ///< the last about an edge length
+    bool touches_itself = true;    ///< contact of the cloth with itself is modelled
+    std::size_t self_decision = 0; ///< that it is not
+    bool came_near_itself = false; ///< which was taken back
     bool out_of_time = false;      ///< the budget did not suffice for the last mesh, which was taken back
 
     /// m: what is asked, or of a budget what it may come to by what is known.
@@ -94,6 +99,24 @@ void decide_graded(AccuracyRun& run, double edge_length, int vertices) {
                "vertices over those of equal triangles everywhere", vertices / uniform);
 }
 
+/// Leaves contact of the cloth with itself out of the next mesh where the last shows that there will be none.
+void decide_self_contact(AccuracyRun& run) {
+    if (!run.accuracy.leaves_out_self_contact || !run.options.self_contact || !run.touches_itself || run.came_near_itself) return;
+    const double reach = run.options.clearance + travel * run.goal();
+    const Garment& g = run.result.garment;
+    if (!g.stitches.empty() || may_touch_itself(node_triangles(g), run.result.state.positions, reach)) return;
+    run.touches_itself = false;
+    run.self_decision = run.report.decisions.size();
+    run.decide(text("contact of the cloth with itself is left out of meshes after that of %.3g mm, since cones of its normals and boxes show "
+                    "that it cannot touch itself", 1e3 * run.mesh(0).edge_length),
+               "distance by which what is not next to each other stays apart at least, m", reach);
+}
+
+/// Whether cloth without contact with itself came to touch itself after all.
+bool touched_itself(const DrapeResult& now, double clearance) {
+    return now.status != DrapeStatus::limit && may_touch_itself(node_triangles(now.garment), now.state.positions, clearance);
+}
+
 /// Drapes at this edge length from where the mesh before came to rest.
 void drape_mesh(AccuracyRun& run, double edge_length) {
     const auto start = AccuracyRun::Clock::now();
@@ -101,10 +124,24 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
     DrapeOptions o = run.options;
     if (run.accuracy.ends_early) o.still = share_of_residual / left_over_step * run.goal();
     o.progress = part_of_meshes(run);
-    o.max_seconds = std::min(o.max_seconds - run.seconds(), run.seconds_left());
     const bool goes_on = at_rest(run);
-    if (goes_on) o.from = carried(run, staging);
-    DrapeResult now = drape(staging, run.avatar, run.fabrics, o);
+    if (goes_on) {
+        o.from = carried(run, staging);
+        decide_self_contact(run);
+    }
+    const auto drape_once = [&] {
+        o.self_contact = run.touches_itself && run.options.self_contact;
+        o.max_seconds = std::min(run.options.max_seconds - run.seconds(), run.seconds_left());
+        return drape(staging, run.avatar, run.fabrics, o);
+    };
+    DrapeResult now = drape_once();
+    if (!run.touches_itself && touched_itself(now, o.clearance)) {
+        run.report.decisions[run.self_decision].taken_back = true;
+        run.touches_itself = run.came_near_itself = true;
+        run.decide(text("contact of the cloth with itself is modelled from the mesh of %.3g mm on, since it came near itself", 1e3 * edge_length),
+                   "clearance, m", o.clearance);
+        now = drape_once();
+    }
     if (goes_on && now.status == DrapeStatus::limit && run.seconds_left() <= 0) {
         run.report.decisions[run.edge_decision].taken_back = true;
         run.decide(text("the drape is that of the mesh of %.3g mm, since one of %.3g mm did not come to rest in the budget",

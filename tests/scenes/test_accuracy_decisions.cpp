@@ -2,25 +2,31 @@
 // What a drape to an accuracy decides by itself, forced the other way: no decision may cost more than the accuracy asked for.
 #include "draping/compare.h"
 #include "draping/drape_to_accuracy.h"
+#include "io/read_avatar.h"
 #include "sewing/avatar.h"
 #include "sewing/form.h"
 #include "src/drape_input.h"
+#include "tests/support/test_data.h"
 
 #include <catch2/catch.hpp>
+
+#include <algorithm>
 
 using namespace toile;
 
 namespace {
 
-struct Tee {
+/// A pattern on a body.
+struct Dressed {
     Pattern pattern;
     DrapeInput input;
-    TriMesh form = make_form({});
+    TriMesh body;
+    DrapeOptions how;
 
-    Tee() {
+    Dressed(const std::string& file, const std::string& fabric, TriMesh b) : body(std::move(b)) {
         std::vector<std::string> warnings;
-        pattern = sound_pattern(TOILE_SOURCE_DIR "/examples/tee.json", warnings);
-        input = input_of(pattern, "", 0.04);
+        pattern = sound_pattern(file, warnings);
+        input = input_of(pattern, fabric, 0.04);
     }
     AccuracyOptions options(double asked) const { // m
         AccuracyOptions o;
@@ -28,20 +34,29 @@ struct Tee {
         o.mesh = [this](double edge, const PlaceFactor& size) { return stage(pattern, flat_of(pattern, edge, false, size)); };
         return o;
     }
-    DrapeResult drape(const AccuracyOptions& o) const { return drape_to_accuracy(o, {form, smoothed_toward_core(form, 0.01)}, input.fabrics, {}); }
+    DrapeResult drape(const AccuracyOptions& o) const { return drape_to_accuracy(o, {body, smoothed_toward_core(body, 0.01)}, input.fabrics, how); }
 };
+
+Dressed tee() { return {TOILE_SOURCE_DIR "/examples/tee.json", "", make_form({})}; }
+
+const AccuracyDecision* about_itself(const AccuracyReport& r) {
+    const auto found = std::find_if(r.decisions.begin(), r.decisions.end(), [](const AccuracyDecision& d) {
+        return d.what.find("contact of the cloth with itself is left out") == 0;
+    });
+    return found == r.decisions.end() ? nullptr : &*found;
+}
 
 } // namespace
 
 TEST_CASE("iterations to the end change a drape to an accuracy by less than a tenth of what it was asked for") {
     constexpr double asked = 5e-3;
-    const Tee tee;
-    const DrapeResult chosen = tee.drape(tee.options(asked));
+    const Dressed worn = tee();
+    const DrapeResult chosen = worn.drape(worn.options(asked));
     REQUIRE(chosen.status == DrapeStatus::converged);
     REQUIRE(chosen.accuracy->met);
-    AccuracyOptions o = tee.options(asked);
+    AccuracyOptions o = worn.options(asked);
     o.ends_early = false;
-    const DrapeResult other = tee.drape(o);
+    const DrapeResult other = worn.drape(o);
     CHECK(other.residual <= 1e-3);
     CHECK(chosen.residual > 1e-3);
     CHECK(compare(surface(chosen), surface(other)).rms < 0.1 * asked);
@@ -49,25 +64,59 @@ TEST_CASE("iterations to the end change a drape to an accuracy by less than a te
 
 TEST_CASE("equal triangles everywhere change a drape to an accuracy by less than it was asked for") {
     constexpr double asked = 2.5e-3;
-    const Tee tee;
-    const DrapeResult chosen = tee.drape(tee.options(asked));
+    const Dressed worn = tee();
+    const DrapeResult chosen = worn.drape(worn.options(asked));
     REQUIRE(chosen.status == DrapeStatus::converged);
     REQUIRE(chosen.accuracy->met);
     REQUIRE(chosen.accuracy->meshes.size() >= 3); // the first two are not graded
-    AccuracyOptions o = tee.options(asked);
+    AccuracyOptions o = worn.options(asked);
     o.graded = false;
-    const DrapeResult other = tee.drape(o);
+    const DrapeResult other = worn.drape(o);
     REQUIRE(other.accuracy->meshes.back().edge_length == Approx(chosen.accuracy->meshes.back().edge_length).epsilon(0.01));
     CHECK(chosen.garment.uv.size() < 0.8 * other.garment.uv.size());
     CHECK(compare(surface(chosen), surface(other)).rms < asked);
 }
 
+TEST_CASE("contact of the cloth with itself that is left out changes a drape to an accuracy by less than a tenth of what it was asked for") {
+    constexpr double asked = 5e-3;
+    const auto pattern = test::test_data("garmentcode/pencil_skirt_specification.json"), body = test::test_data("bodies/mean_female.obj");
+    if (!pattern || !body) return;
+    const Dressed skirt(*pattern, "jersey", read_avatar(*body).body);
+    AccuracyOptions o = skirt.options(asked);
+    const DrapeResult chosen = skirt.drape(o);
+    REQUIRE(chosen.status == DrapeStatus::converged);
+    REQUIRE(about_itself(*chosen.accuracy));
+    CHECK_FALSE(about_itself(*chosen.accuracy)->taken_back);
+    o.leaves_out_self_contact = false;
+    const DrapeResult other = skirt.drape(o);
+    CHECK_FALSE(about_itself(*other.accuracy));
+    CHECK(compare(surface(chosen), surface(other)).rms < 0.1 * asked);
+}
+
+TEST_CASE("contact of the cloth with itself comes back into a drape to an accuracy where cloth comes near itself") {
+    const auto pattern = test::test_data("garmentcode/pencil_skirt_specification.json"), body = test::test_data("bodies/mean_female.obj");
+    if (!pattern || !body) return;
+    Dressed skirt(*pattern, "jersey", read_avatar(*body).body);
+    AccuracyOptions o = skirt.options(1e-4);
+    o.finest = 0.02;
+    skirt.how.clearance = 1e-2; // farther than finer triangles at the corner of two patches are from each other
+    const DrapeResult chosen = skirt.drape(o);
+    REQUIRE(chosen.status == DrapeStatus::converged);
+    REQUIRE(about_itself(*chosen.accuracy));
+    CHECK(about_itself(*chosen.accuracy)->taken_back);
+    CHECK(chosen.accuracy->decisions[about_itself(*chosen.accuracy) - chosen.accuracy->decisions.data() + 1].what.find("is modelled from the mesh of 20 mm on") !=
+          std::string::npos);
+    o.leaves_out_self_contact = false;
+    const DrapeResult other = skirt.drape(o);
+    CHECK(chosen.state.positions == other.state.positions);
+}
+
 TEST_CASE("a budget of time is spent on finer meshes, and one that does not fit is not begun") {
-    const Tee tee;
-    AccuracyOptions o = tee.options(0);
+    const Dressed worn = tee();
+    AccuracyOptions o = worn.options(0);
     o.finest = 0.028;
     o.budget = 1e6;
-    const DrapeResult ample = tee.drape(o);
+    const DrapeResult ample = worn.drape(o);
     REQUIRE(ample.status == DrapeStatus::converged);
     CHECK(ample.accuracy->met);
     CHECK_FALSE(ample.accuracy->asked);
@@ -76,12 +125,12 @@ TEST_CASE("a budget of time is spent on finer meshes, and one that does not fit 
     CHECK(*ample.accuracy->estimate > 0);
 
     o.budget = 1.2 * ample.accuracy->meshes[0].seconds; // one of half as many again takes longer than a fifth of it
-    const DrapeResult scant = tee.drape(o);
+    const DrapeResult scant = worn.drape(o);
     CHECK(scant.accuracy->meshes.size() <= 1);
     CHECK_FALSE(scant.accuracy->estimate);
 
     o.budget = 1e-3;
-    const DrapeResult none = tee.drape(o);
+    const DrapeResult none = worn.drape(o);
     CHECK(none.status == DrapeStatus::limit);
     CHECK_FALSE(none.accuracy->met);
 }

@@ -39,7 +39,8 @@ double mean_gap(const Garment& g, const Points& x) {
     return g.stitches.empty() ? 0 : sum / double(g.stitches.size());
 }
 
-/// Pulls the seams of the coarsest level shut around the body; returns the widest gap left, m.
+/// Pulls the seams of the coarsest level shut around the body, without hooks where they keep one open; returns the widest gap
+/// left, m.
 double close_open_seams(DrapeRun& run, const Garment& open, ClothProblem& problem, Points& x, Cholesky& factor) {
     SettleOptions o;
     o.tolerance = 1e-2;
@@ -249,7 +250,10 @@ Sewn pull_shut(DrapeRun& run, const Start& start, const Sewing& way) {
             if (its < turn || problem.stitches[k].stiffness > 0) continue;
             start_to_pull(problem, open, int(k));
         }
-        return close_open_seams(run, some, problem, sewn.x, factor);
+        const std::vector<HookSpring> hooks = problem.hooks; // what waits hangs by them later on
+        const double gap = close_open_seams(run, some, problem, sewn.x, factor);
+        problem.hooks = hooks;
+        return gap;
     };
     if (!problem.sheet()->creases.empty()) press_creases(run, problem, sewn.x, factor);
     const bool some_wait = !way.waiting.seams.empty();

@@ -39,8 +39,7 @@ double mean_gap(const Garment& g, const Points& x) {
     return g.stitches.empty() ? 0 : sum / double(g.stitches.size());
 }
 
-/// Pulls the seams of the coarsest level shut around the body, without hooks where they keep one open; returns the widest gap
-/// left, m.
+/// Pulls the seams of the coarsest level shut around the body; returns the widest gap left, m.
 double close_open_seams(DrapeRun& run, const Garment& open, ClothProblem& problem, Points& x, Cholesky& factor) {
     SettleOptions o;
     o.tolerance = 1e-2;
@@ -64,15 +63,13 @@ double close_open_seams(DrapeRun& run, const Garment& open, ClothProblem& proble
         // at all, something is in the way.
         const double mean = mean_gap(open, x);
         locked = std::min(gap / last, mean / last_mean) > 0.995 ? locked + 1 : 0;
-        const bool all_pull = cap_scale > most_pull && mean > 0.95 * last_mean && gap > 0.95 * last;
-        if (locked == 4 || all_pull) { // hooks may hold the cloth where its seam does not reach
-            if (problem.hooks.empty()) return gap;
-            problem.hooks.clear();
-            locked = 0;
-        }
-        if (gap > 0.95 * last && cap_scale <= most_pull) {
-            cap_scale *= 1.5;
-            for (auto& s : problem.stitches) s.cap *= 1.5;
+        if (locked == 4) return gap;
+        if (gap > 0.95 * last) {
+            if (cap_scale > most_pull && mean > 0.95 * last_mean) return gap;
+            if (cap_scale <= most_pull) {
+                cap_scale *= 1.5;
+                for (auto& s : problem.stitches) s.cap *= 1.5;
+            }
         }
         last = gap;
         last_mean = mean;
@@ -234,7 +231,7 @@ Sewn pull_shut(DrapeRun& run, const Start& start, const Sewing& way) {
     contact.cloth.stiffness *= sewing_softness;
     ClothProblem problem(open, run.fabrics, run.body, contact);
     problem.sheet()->softness = 1.0 / 16;
-    if (start.lift == 0) problem.hooks = hooks_on(run, open, all_hooked(run), problem);
+    if (start.lift == 0 && way.hooks) problem.hooks = hooks_on(run, open, all_hooked(run), problem);
     for (const auto& [node, place] : pinned_places(run.staging, 0, open)) problem.pin(node);
     Cholesky factor;
     for (const Stitch& s : open.stitches) problem.stitches.push_back({s.a, s.b, s.r, 0, 0});
@@ -250,10 +247,7 @@ Sewn pull_shut(DrapeRun& run, const Start& start, const Sewing& way) {
             if (its < turn || problem.stitches[k].stiffness > 0) continue;
             start_to_pull(problem, open, int(k));
         }
-        const std::vector<HookSpring> hooks = problem.hooks; // what waits hangs by them later on
-        const double gap = close_open_seams(run, some, problem, sewn.x, factor);
-        problem.hooks = hooks;
-        return gap;
+        return close_open_seams(run, some, problem, sewn.x, factor);
     };
     if (!problem.sheet()->creases.empty()) press_creases(run, problem, sewn.x, factor);
     const bool some_wait = !way.waiting.seams.empty();

@@ -22,6 +22,7 @@ struct Start {
 /// How seams are closed.
 struct Sewing {
     bool self = true; ///< with contact between panels
+    bool hooks = true; ///< carrying edges are held at their height; never where the garment was moved up or down
     Waiting waiting = {};  ///< until the other seams are closed and the cloth hangs, and are then
     bool careful = false;  ///< sewn one stitch at a time
 };

@@ -100,21 +100,23 @@ void sew_coarsest(DrapeRun& run) {
         return run.stopped || (!sewn.open && sewn.crossings == 0);
     };
     const Start as_filed = place(run, 0);
-    bool done = closes(as_filed, {true, {}});
-    done = done || closes(as_filed, {false, {}});
+    bool done = closes(as_filed, {.self = true});
+    done = done || closes(as_filed, {.self = false});
     const Waiting waiting =
         done || !sewn.open ? Waiting()
                            : what_waits(staged.garment, sewn.x, run.body, forced_share * run.edge_length());
     if (!done && sewn.open && run.staging.pins.empty())
         if (const double lift = free_height(staged.garment, run.laid.x, run.body); lift != 0) {
             const Start lifted = place(run, lift);
-            done = closes(lifted, {true, {}}) || closes(lifted, {false, {}});
+            done = closes(lifted, {.self = true}) || closes(lifted, {.self = false});
         }
+    if (!done && sewn.open) // hooks may hold a bodice lower than its shoulders reach
+        done = closes(as_filed, {.self = true, .hooks = false}) || closes(as_filed, {.self = false, .hooks = false});
     if (!done && sewn.open && !waiting.seams.empty()) {
         const Start hung = place(run, 0, waiting.outside);
-        if (!closes(hung, {true, waiting}) && (sewn.open || !comes_apart(run, sewn))) {
+        if (!closes(hung, {.waiting = waiting}) && (sewn.open || !comes_apart(run, sewn))) {
             const Sewn quick = sewn;
-            closes(hung, {true, waiting, true});
+            closes(hung, {.waiting = waiting, .careful = true});
             // What little holds may slide down while it is sewn for long.
             if (sewn.way.careful && !quick.open && mean_height(sewn.x) < mean_height(quick.x) - slipped) sewn = quick;
         }
@@ -135,6 +137,8 @@ void sew_coarsest(DrapeRun& run) {
         if (!sewn.way.waiting.seams.empty())
             run.result.decisions.push_back("seams with the body in their way were sewn when the others were closed "
                                            "and the cloth hung down: all at once could not close");
+        if (!sewn.way.hooks)
+            run.result.decisions.push_back("carrying edges were not held at their height while seams closed: held there a seam stayed open");
         if (sewn.way.careful)
             run.result.decisions.push_back("they were sewn stitch by stitch: more at a time pinched folds between their sides");
         if (!sewn.way.self && sewn.crossings == 0)

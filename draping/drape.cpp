@@ -221,13 +221,14 @@ DrapeResult drape_from_coarsest(const Staging& staging, const Avatar& avatar, co
     return std::move(run.result);
 }
 
+bool seams_closed(const DrapeResult& r) { return seam_gap_max(r.garment, r.state.positions) < weld_gap; }
+
 /// Whether triangles that were too coarse to be sewn, or to fold as the cloth has to, may have kept a drape from coming to
 /// rest. What is too small counts when a seam stayed open: its cloth may have caught on what it would have passed.
 bool coarsest_may_be_to_blame(const Staging& staging, const DrapeResult& r) {
     const bool sewn = r.levels[0].edge_length == staging.levels[0].edge_length; // and not taken up from an earlier drape
-    const bool open = seam_gap_max(r.garment, r.state.positions) >= weld_gap;
     return staging.levels.size() > 1 && sewn &&
-           (r.status == DrapeStatus::stalled || (r.status == DrapeStatus::too_small && open));
+           (r.status == DrapeStatus::stalled || (r.status == DrapeStatus::too_small && !seams_closed(r)));
 }
 
 } // namespace
@@ -272,11 +273,16 @@ DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabri
         };
     const Staging finer = without_coarsest(staging);
     DrapeResult again = drape_from_coarsest(finer, avatar, fabrics, o);
-    if (again.status == DrapeStatus::limit) return result;
+    const std::string anew = text("the garment was sewn anew on a mesh of %.3g mm", 1e3 * finer.levels[0].edge_length);
+    const bool better = again.status == DrapeStatus::converged || again.status == DrapeStatus::animated ||
+                        (seams_closed(again) && !seams_closed(result));
+    if (!better) {
+        result.decisions.push_back(anew + ", which was no better: " + to_string(again.status) + ", " + again.where);
+        return result;
+    }
     again.decisions.insert(again.decisions.begin(),
-                           text("the garment was sewn anew on a mesh of %.3g mm; with one of %.3g mm it was %s: %s",
-                                1e3 * finer.levels[0].edge_length, 1e3 * staging.levels[0].edge_length, to_string(result.status),
-                                result.where.c_str()));
+                           anew + text("; with one of %.3g mm it was ", 1e3 * staging.levels[0].edge_length) + to_string(result.status) +
+                               ": " + result.where);
     return joined(std::move(result), std::move(again));
 }
 

@@ -39,9 +39,7 @@ struct AccuracyRun {
     DrapeResult result = {};
     AccuracyReport report = {};
     std::size_t edge_decision = 0; ///< the last about an edge length
-    bool touches_itself = true;    ///< contact of the cloth with itself is modelled
-    std::size_t self_decision = 0; ///< that it is not
-    bool came_near_itself = false; ///< which was taken back
+    std::optional<std::size_t> self_decision = {}; ///< that contact of the cloth with itself is left out
     bool out_of_time = false;      ///< the budget did not suffice for the last mesh, which was taken back
 
     /// m: what is asked, or of a budget what it may come to by what is known.
@@ -51,6 +49,8 @@ struct AccuracyRun {
     void decide(std::string what, std::string measure, double value) {
         report.decisions.push_back({std::move(what), std::move(measure), value, false});
     }
+    /// Whether contact of the cloth with itself is left out.
+    bool alone() const { return self_decision && !report.decisions[*self_decision].taken_back; }
     int meshes() const { return int(report.meshes.size()); }
     const AccuracyMesh& mesh(int from_last) const { return report.meshes[report.meshes.size() - 1 - from_last]; }
 };
@@ -101,11 +101,10 @@ void decide_graded(AccuracyRun& run, double edge_length, int vertices) {
 
 /// Leaves contact of the cloth with itself out of the next mesh where the last shows that there will be none.
 void decide_self_contact(AccuracyRun& run) {
-    if (!run.accuracy.leaves_out_self_contact || !run.options.self_contact || !run.touches_itself || run.came_near_itself) return;
+    if (!run.accuracy.leaves_out_self_contact || !run.options.self_contact || run.self_decision) return;
     const double reach = run.options.clearance + travel * run.goal();
     const Garment& g = run.result.garment;
     if (!g.stitches.empty() || may_touch_itself(node_triangles(g), run.result.state.positions, reach)) return;
-    run.touches_itself = false;
     run.self_decision = run.report.decisions.size();
     run.decide(text("contact of the cloth with itself is left out of meshes after that of %.3g mm, since cones of its normals and boxes show "
                     "that it cannot touch itself", 1e3 * run.mesh(0).edge_length),
@@ -130,14 +129,13 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
         decide_self_contact(run);
     }
     const auto drape_once = [&] {
-        o.self_contact = run.touches_itself && run.options.self_contact;
+        o.self_contact = run.options.self_contact && !run.alone();
         o.max_seconds = std::min(run.options.max_seconds - run.seconds(), run.seconds_left());
         return drape(staging, run.avatar, run.fabrics, o);
     };
     DrapeResult now = drape_once();
-    if (!run.touches_itself && touched_itself(now, o.clearance)) {
-        run.report.decisions[run.self_decision].taken_back = true;
-        run.touches_itself = run.came_near_itself = true;
+    if (run.alone() && touched_itself(now, o.clearance)) {
+        run.report.decisions[*run.self_decision].taken_back = true;
         run.decide(text("contact of the cloth with itself is modelled from the mesh of %.3g mm on, since it came near itself", 1e3 * edge_length),
                    "clearance, m", o.clearance);
         now = drape_once();

@@ -110,7 +110,7 @@ void sew_coarsest(DrapeRun& run) {
             const Start lifted = place(run, lift);
             done = closes(lifted, {.self = true}) || closes(lifted, {.self = false});
         }
-    if (!done && sewn.open) // hooks may hold a bodice lower than its shoulders reach
+    if (!done && sewn.open && !all_hooked(run).empty()) // hooks may hold a bodice lower than its shoulders reach
         done = closes(as_filed, {.self = true, .hooks = false}) || closes(as_filed, {.self = false, .hooks = false});
     if (!done && sewn.open && !waiting.seams.empty()) {
         const Start hung = place(run, 0, waiting.outside);

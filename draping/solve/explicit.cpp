@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/solve/explicit.h"
 
-#include "draping/solve/stability.h"
 #include "geometry/text.h"
 
 #include <algorithm>
@@ -34,7 +33,7 @@ void add_held(std::vector<HeldTouch>& touches, const std::vector<HeldTouch>& hel
 
 } // namespace
 
-double ExplicitStepper::stable_substep(const Points& x) { return margin * fastest(problem_, x).step(); }
+double ExplicitStepper::stable_substep(const Points& x) { return margin * fastest(problem_, x, &fastest_).step(); }
 
 void ExplicitStepper::hold_touches(const Moving& cloth, Points& v, const Points& body_velocity, Points& impulse) const {
     const int n = int(v.size());

@@ -6,6 +6,7 @@
 // impulses that only push, with friction, so that cloth can lie still between two responses.
 
 #include "draping/solve/problem_stepper.h"
+#include "draping/solve/stability.h"
 
 namespace toile {
 
@@ -35,6 +36,7 @@ private:
     void hold_touches(const Moving& cloth, Points& v, const Points& body_velocity, Points& impulse) const;
 
     double stable_ = 0; ///< s, substep that is stable where the last step ended; 0: unknown
+    FastestMotions fastest_;
     int count_ = 0;
 };
 

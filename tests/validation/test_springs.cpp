@@ -198,6 +198,26 @@ TEST_CASE("springs: explicit steps blow up from 2 / w on and not before", "[spri
     }
 }
 
+TEST_CASE("springs: the fastest motion is followed from place to place", "[springs]") {
+    Fabric f = plain_fabric(100, 1e-5);
+    const FlatMesh mesh = jittered_rectangle(0.2, 0.2, 0.0125, 0.25, 7);
+    SpringMeshOptions how;
+    how.damping_time = 1e-3;
+    FreeCloth problem(std::make_unique<Springs>(mesh_springs(garment_of(mesh), {f}, how)), std::vector<double>(mesh.points.size(), 1e-4));
+    Points x = flat_points(mesh);
+    FastestMotions motions;
+    Random random(11);
+    for (int k = 0; k < 20; ++k) {
+        const double followed = fastest(problem, x, &motions).step();
+        CHECK(followed == Approx(fastest(problem, x).step()).epsilon(0.01));
+        for (Vec3& p : x) p += 2e-4 * Vec3(random.in(-1, 1), random.in(-1, 1), random.in(-1, 1));
+    }
+    x[x.size() / 2] += Vec3(0.006, 0, 0); // what is fastest now was not, and is elsewhere: within what explicit steps keep from the bound
+    const double anew = fastest(problem, x).step();
+    fastest(problem, x, &motions);
+    CHECK(fastest(problem, x, &motions).step() == Approx(anew).epsilon(0.03));
+}
+
 TEST_CASE("springs: damping shortens the steps that explicit springs bear", "[springs]") {
     // With k_d = t k_s, w^2 h^2 + 2 t w^2 h = 4.
     const double w = 2 / 584.7e-6;

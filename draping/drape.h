@@ -51,7 +51,7 @@ struct DrapeOptions {
     std::optional<ContactResponse> contact;
     bool self_contact = true;       ///< of the cloth with itself once it is sewn; without it, cloth may cross itself
     AnimateOptions animation;
-    int max_iterations = 5000;      ///< Newton iterations, or four steps of a motion each, on all levels together
+    int max_iterations = 5000;      ///< Newton iterations, or eight steps of a motion each, on all levels together
     double max_seconds = 1e9;       ///< wall time after which the state reached is returned with status limit
     double max_memory = 1e18;       ///< bytes of the process; the same happens when they or the next level come near
     std::vector<std::string> hold;  ///< edges whose hooks stay on to the end: words of labels_called()

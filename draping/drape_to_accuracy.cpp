@@ -6,6 +6,7 @@
 #include "draping/contact/self_touch.h"
 #include "draping/grade.h"
 #include "draping/joined.h"
+#include "draping/strain_difference.h"
 #include "geometry/text.h"
 
 #include <algorithm>
@@ -25,6 +26,8 @@ constexpr double most_finer = 0.5;
 constexpr double curved_most = 0.3;        // of the area: with a tenth, errors grew more than vertices went
 constexpr double aim = 0.7;                // of what is asked: estimates are off by about as much
 constexpr double share_of_residual = 0.1;  // of the error asked for, that iterations may leave
+constexpr double share_of_model = 0.1;     // of the error asked for, that a lighter method may make
+constexpr Method lighter = Method::projective; // the least time to an error where nothing touches, by docs/chart.md
 constexpr double travel = 2;               // of the error asked for: by which cloth may go on from one mesh to the next
 constexpr double left_over_step = 10;      // what was left to rest over the last step at a residual below 1: 2 to 10 were seen
 
@@ -40,10 +43,15 @@ struct AccuracyRun {
     AccuracyReport report = {};
     std::size_t edge_decision = 0; ///< the last about an edge length
     std::optional<std::size_t> self_decision = {}; ///< that contact of the cloth with itself is left out
+    std::optional<std::size_t> method_decision = {}; ///< that a lighter method takes over
     bool out_of_time = false;      ///< the budget did not suffice for the last mesh, which was taken back
 
-    /// m: what is asked, or of a budget what it may come to by what is known.
+    bool of_strain() const { return accuracy.of == AccuracyOf::strain; }
+    /// What is asked, or of a budget what it may come to by what is known.
     double goal() const { return !accuracy.budget ? accuracy.asked : report.estimate.value_or(usual_error); }
+    /// m, the same of a node's place; of strain by what an edge may be too long.
+    double goal_of_place(double edge_length) const { return of_strain() ? accuracy.asked * edge_length : goal(); }
+    std::string asked_measure() const { return of_strain() ? "RMS of strain asked" : "RMS asked, m"; }
     double seconds_left() const { return accuracy.budget.value_or(std::numeric_limits<double>::infinity()) - seconds(); }
     double seconds() const { return std::chrono::duration<double>(Clock::now() - started).count(); }
     void decide(std::string what, std::string measure, double value) {
@@ -51,6 +59,7 @@ struct AccuracyRun {
     }
     /// Whether contact of the cloth with itself is left out.
     bool alone() const { return self_decision && !report.decisions[*self_decision].taken_back; }
+    Method method() const { return method_decision && !report.decisions[*method_decision].taken_back ? lighter : options.method; }
     int meshes() const { return int(report.meshes.size()); }
     const AccuracyMesh& mesh(int from_last) const { return report.meshes[report.meshes.size() - 1 - from_last]; }
 };
@@ -99,16 +108,18 @@ void decide_graded(AccuracyRun& run, double edge_length, int vertices) {
                "vertices over those of equal triangles everywhere", vertices / uniform);
 }
 
+/// How near cloth may come from one mesh to the next, m.
+double reach(const AccuracyRun& run) { return run.options.clearance + travel * (run.of_strain() ? usual_error : run.goal()); }
+
 /// Leaves contact of the cloth with itself out of the next mesh where the last shows that there will be none.
 void decide_self_contact(AccuracyRun& run) {
     if (!run.accuracy.leaves_out_self_contact || !run.options.self_contact || run.self_decision) return;
-    const double reach = run.options.clearance + travel * run.goal();
     const Garment& g = run.result.garment;
-    if (!g.stitches.empty() || may_touch_itself(node_triangles(g), run.result.state.positions, reach)) return;
+    if (!g.stitches.empty() || may_touch_itself(node_triangles(g), run.result.state.positions, reach(run))) return;
     run.self_decision = run.report.decisions.size();
     run.decide(text("contact of the cloth with itself is left out of meshes after that of %.3g mm, since cones of its normals and boxes show "
                     "that it cannot touch itself", 1e3 * run.mesh(0).edge_length),
-               "distance by which what is not next to each other stays apart at least, m", reach);
+               "distance by which what is not next to each other stays apart at least, m", reach(run));
 }
 
 /// Whether cloth without contact with itself came to touch itself after all.
@@ -116,12 +127,41 @@ bool touched_itself(const DrapeResult& now, double clearance) {
     return now.status != DrapeStatus::limit && may_touch_itself(node_triangles(now.garment), now.state.positions, clearance);
 }
 
+/// Of a drape on the next mesh from that on the last.
+double difference(const AccuracyRun& run, const DrapeResult& now) {
+    if (!run.of_strain()) return compare(surface(run.result), surface(now)).rms;
+    return strain_difference(run.result.garment, run.result.state.positions, now.garment, now.state.positions);
+}
+
+/// Where cloth touches nothing, a lighter method has no contact to take turns with. Whether its model will do, the first mesh tells,
+/// brought to rest by it as well.
+void decide_method(AccuracyRun& run, const Staging& first) {
+    const Garment& g = run.result.garment;
+    const Points& x = run.result.state.positions;
+    if (!run.accuracy.lightens || run.result.status != DrapeStatus::converged || !g.stitches.empty() ||
+        clearance_min(node_triangles(g), x, run.avatar.body) <= reach(run) || may_touch_itself(node_triangles(g), x, reach(run)))
+        return;
+    DrapeOptions o = run.options;
+    o.method = lighter;
+    o.from = x;
+    o.max_seconds = std::min(run.options.max_seconds - run.seconds(), run.seconds_left());
+    o.progress = part_of_meshes(run);
+    const DrapeResult by_it = drape(first, run.avatar, run.fabrics, o);
+    const double apart = difference(run, by_it);
+    if (by_it.status != DrapeStatus::converged || !(apart <= share_of_model * run.goal())) return;
+    run.method_decision = run.report.decisions.size();
+    run.report.model = apart;
+    run.decide(text("finer meshes come to rest by %s, which is lighter, since the cloth touches nothing and the mesh of %.3g mm rests nearly alike by both",
+                    to_string(lighter), 1e3 * run.mesh(0).edge_length),
+               run.of_strain() ? "difference of their strains, RMS" : "distance of one from the other, RMS, m", apart);
+}
+
 /// Drapes at this edge length from where the mesh before came to rest.
 void drape_mesh(AccuracyRun& run, double edge_length) {
     const auto start = AccuracyRun::Clock::now();
     const Staging staging = mesh_for(run, edge_length);
     DrapeOptions o = run.options;
-    if (run.accuracy.ends_early) o.still = share_of_residual / left_over_step * run.goal();
+    if (run.accuracy.ends_early) o.still = share_of_residual / left_over_step * run.goal_of_place(edge_length);
     o.progress = part_of_meshes(run);
     const bool goes_on = at_rest(run);
     if (goes_on) {
@@ -129,6 +169,7 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
         decide_self_contact(run);
     }
     const auto drape_once = [&] {
+        o.method = run.method();
         o.self_contact = run.options.self_contact && !run.alone();
         o.max_seconds = std::min(run.options.max_seconds - run.seconds(), run.seconds_left());
         return drape(staging, run.avatar, run.fabrics, o);
@@ -138,6 +179,14 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
         run.report.decisions[*run.self_decision].taken_back = true;
         run.decide(text("contact of the cloth with itself is modelled from the mesh of %.3g mm on, since it came near itself", 1e3 * edge_length),
                    "clearance, m", o.clearance);
+        now = drape_once();
+    }
+    if (run.method() != run.options.method && now.status == DrapeStatus::stalled) {
+        run.report.decisions[*run.method_decision].taken_back = true;
+        run.report.model = 0;
+        run.decide(text("%s again from the mesh of %.3g mm on, which did not come to rest by %s", to_string(run.options.method), 1e3 * edge_length,
+                        to_string(lighter)),
+                   "residual that it came to", std::isfinite(now.residual) ? now.residual : 0);
         now = drape_once();
     }
     if (goes_on && now.status == DrapeStatus::limit && run.seconds_left() <= 0) {
@@ -155,9 +204,10 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
     for (const LevelReport& level : now.levels) mesh.iterations += level.iterations;
     mesh.seconds = std::chrono::duration<double>(AccuracyRun::Clock::now() - start).count();
     if (may_grade(run)) decide_graded(run, edge_length, mesh.vertices);
-    if (goes_on) mesh.difference = compare(surface(run.result), surface(now)).rms;
+    if (goes_on) mesh.difference = difference(run, now);
     run.result = run.meshes() > 0 ? joined(std::move(run.result), std::move(now)) : std::move(now);
     run.report.meshes.push_back(mesh);
+    if (!goes_on && at_rest(run)) decide_method(run, staging);
 }
 
 /// From the differences of the last meshes.
@@ -169,8 +219,8 @@ void estimate(AccuracyRun& run) {
     if (before.difference && *now.difference > 0 && *before.difference > 0)
         r.order = measured_order(*before.difference, *now.difference, run.mesh(2).edge_length, before.edge_length, now.edge_length);
     r.discretisation = expected_change(*now.difference, ratio, r.order);
-    r.residual = left_over_step * now.motion;
-    r.estimate = r.discretisation + r.residual;
+    r.residual = left_over_step * now.motion / (run.of_strain() ? now.edge_length : 1);
+    r.estimate = r.discretisation + r.residual + r.model;
 }
 
 /// The edge length at which the estimate would be a little below what is asked, if errors fall by the order found.
@@ -197,7 +247,7 @@ std::optional<double> edge_in_budget(AccuracyRun& run) {
 
 /// Of the second mesh, before anything is known of this garment's errors.
 double second_edge(const AccuracyRun& run) {
-    const double usual = usual_edge * std::pow(run.accuracy.asked / usual_error, 1 / assumed_order);
+    const double usual = run.of_strain() ? usual_edge : usual_edge * std::pow(run.accuracy.asked / usual_error, 1 / assumed_order);
     return std::max(std::clamp(usual, most_finer * first_accuracy_edge, least_finer * first_accuracy_edge), run.accuracy.finest);
 }
 
@@ -228,13 +278,13 @@ std::optional<double> choose_next(AccuracyRun& run) {
     if (!run.mesh(0).difference) {
         if (last <= run.accuracy.finest * (1 + 1e-9)) return std::nullopt;
         const double edge = run.meshes() == 1 ? second_edge(run) : std::max(least_finer * last, run.accuracy.finest);
-        decide_edge(run, text("a mesh of %.3g mm, whose difference from the first at rest tells the error", 1e3 * edge), "RMS asked, m",
+        decide_edge(run, text("a mesh of %.3g mm, whose difference from the first at rest tells the error", 1e3 * edge), run.asked_measure(),
                     run.accuracy.asked);
         return edge;
     }
     estimate(run);
     r.met = *r.estimate <= run.accuracy.asked;
-    const std::string by = text("estimate of the error at %.3g mm, m", 1e3 * run.mesh(0).edge_length);
+    const std::string by = text("estimate of the error at %.3g mm, ", 1e3 * run.mesh(0).edge_length) + (run.of_strain() ? "of strain" : "m");
     if (r.met) {
         run.decide("the last mesh is fine enough", by, *r.estimate);
         return std::nullopt;
@@ -254,14 +304,16 @@ std::optional<double> choose_next(AccuracyRun& run) {
 DrapeResult drape_to_accuracy(const AccuracyOptions& accuracy, const Avatar& avatar, const PanelFabrics& fabrics,
                               const DrapeOptions& options) {
     AccuracyRun run{.accuracy = accuracy, .avatar = avatar, .fabrics = fabrics, .options = options};
+    run.report.of = accuracy.of;
     run.report.budget = accuracy.budget;
     if (!accuracy.budget) run.report.asked = accuracy.asked;
-    const std::string whole = accuracy.budget ? "the estimate of the error" : "what is asked";
+    const std::string whole = accuracy.budget ? "the estimate of the error" : run.of_strain() ? "what is asked, of an edge's length," : "what is asked";
     if (accuracy.ends_early)
-        run.decide("iterations on a mesh end when the last moved no node farther than a hundredth of " + whole + ", at a residual of 1",
-                   "a hundredth of " + whole + ", m", share_of_residual / left_over_step * run.goal());
+        run.decide("iterations on a mesh end when the last moved no node farther than a hundredth of " + whole + " at a residual of 1",
+                   run.of_strain() ? "a hundredth of what is asked" : "a hundredth of " + whole + ", m",
+                   share_of_residual / left_over_step * run.goal());
     decide_edge(run, text("a first mesh of %.3g mm", 1e3 * std::max(first_accuracy_edge, accuracy.finest)),
-                accuracy.budget ? "seconds of the budget" : "RMS asked, m", accuracy.budget.value_or(accuracy.asked));
+                accuracy.budget ? "seconds of the budget" : run.asked_measure(), accuracy.budget.value_or(accuracy.asked));
     drape_mesh(run, std::max(first_accuracy_edge, accuracy.finest));
     while (const std::optional<double> edge = choose_next(run)) drape_mesh(run, *edge);
     run.result.accuracy = std::move(run.report);

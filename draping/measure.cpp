@@ -67,6 +67,9 @@ TriangleStrain strain_of(const Mat2& rest, const Vec3& a, const Vec3& b, const V
     return {std::sqrt(yy) - 1, std::sqrt(xx) - 1, larger - 1, (larger > 0 ? area / larger : 0) - 1, shear};
 }
 
+/// Cloth that is gathered is not strained.
+double counted(double strain, bool eased) { return eased ? std::max(strain, 0.0) : strain; }
+
 double tighter(double limit, double other) {
     return limit > 0 && (other <= 0 || limit < other) ? limit : other;
 }
@@ -219,11 +222,10 @@ StrainMeasure measure_strain(const Garment& garment, const Points& x, const Pane
         const auto [a, b, c] = garment.nodes(t);
         const TriangleStrain s = strain_of(rest, x[a], x[b], x[c]);
         const bool eased = garment.eased_triangle[t];
-        const auto counted = [eased](double strain) { return eased ? std::max(strain, 0.0) : strain; };
-        warp.push_back({counted(s.warp), area});
-        weft.push_back({counted(s.weft), area});
-        principal.push_back({counted(s.larger), area});
-        principal.push_back({counted(s.smaller), area});
+        warp.push_back({counted(s.warp, eased), area});
+        weft.push_back({counted(s.weft, eased), area});
+        principal.push_back({counted(s.larger, eased), area});
+        principal.push_back({counted(s.smaller, eased), area});
         shear.push_back({s.shear, area});
         if (eased) continue;
         off_seams += area;
@@ -242,6 +244,19 @@ StrainMeasure measure_strain(const Garment& garment, const Points& x, const Pane
         measure.limit_shear = tighter(f.limit_shear, measure.limit_shear);
     }
     return measure;
+}
+
+std::vector<Vec2> yarn_strains(const Garment& garment, const Points& x) {
+    std::vector<Vec2> strains(garment.triangles.size(), Vec2::Zero());
+    for (int t = 0; t < int(garment.triangles.size()); ++t) {
+        const Mat2& rest = garment.rest.edges[t];
+        if (!(rest_area(rest) > 0)) continue;
+        const auto [a, b, c] = garment.nodes(t);
+        const TriangleStrain s = strain_of(rest, x[a], x[b], x[c]);
+        const bool eased = garment.eased_triangle[t];
+        strains[t] = {counted(s.weft, eased), counted(s.warp, eased)};
+    }
+    return strains;
 }
 
 DevelopabilityMeasure measure_developability(const Garment& garment, const Points& x) {

@@ -53,6 +53,9 @@ using PanelFabrics = std::vector<Fabric>;
 /// `fabrics` may be empty: the limits are then unknown (0). Triangles of no flat area do not count.
 StrainMeasure measure_strain(const Garment& garment, const Points& x, const PanelFabrics& fabrics);
 
+/// The strain of every triangle along (weft, warp), as above; 0 where there is no flat area.
+std::vector<Vec2> yarn_strains(const Garment& garment, const Points& x);
+
 DevelopabilityMeasure measure_developability(const Garment& garment, const Points& x);
 
 /// The torso is the largest loop of the body at this height, so it has to be above the crotch.

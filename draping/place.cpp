@@ -307,12 +307,29 @@ double free_height(const Garment& garment, const Points& x, const TriMesh& body)
     return best;
 }
 
-std::vector<char> seams_through_body(const Garment& garment, const Points& x, const TriMesh& body) {
+std::vector<char> stitches_through_body(const Garment& garment, const Points& x, const TriMesh& body) {
+    return blocked_threads(garment, x, Obstacle{body}, Vec3::Zero());
+}
+
+std::optional<double> height_free_for(const Garment& garment, const Points& x, const TriMesh& body, const std::vector<char>& stitches) {
     const Obstacle obstacle{body};
+    for (int k = 0; k * height_step <= highest; ++k)
+        for (const double height : {-k * height_step, k * height_step}) {
+            const std::vector<char> now = blocked_threads(garment, x, obstacle, {0, height, 0});
+            bool any = false;
+            for (std::size_t s = 0; s < now.size(); ++s) any = any || (now[s] && stitches[s]);
+            if (!any) return height;
+        }
+    return std::nullopt;
+}
+
+std::vector<char> seams_through_body(const Garment& garment, const Points& x, const TriMesh& body) {
+    const std::vector<char> blocked = stitches_through_body(garment, x, body);
     std::vector<char> through;
-    for (const Stitch& s : garment.stitches) {
-        through.resize(std::max(through.size(), std::size_t(s.seam + 1)), 0);
-        if (obstacle.in_the_way(x[s.a], seam_point(s, x))) through[s.seam] = 1;
+    for (std::size_t k = 0; k < blocked.size(); ++k) {
+        const int seam = garment.stitches[k].seam;
+        through.resize(std::max(through.size(), std::size_t(seam + 1)), 0);
+        if (blocked[k]) through[seam] = 1;
     }
     return through;
 }

@@ -7,6 +7,8 @@
 #include "geometry/tri_mesh.h"
 #include "sewing/garment.h"
 
+#include <optional>
+
 namespace toile {
 
 struct PlaceOptions {
@@ -47,5 +49,12 @@ std::vector<char> seams_through_body(const Garment& garment, const Points& x, co
 /// metre. A thread that is free at first and goes into the body on the way counts as if it stayed there: beyond it the
 /// seam would be on the wrong side, a shoulder below the arm.
 double free_height(const Garment& garment, const Points& x, const TriMesh& body);
+
+/// Which stitches have the body between their sides.
+std::vector<char> stitches_through_body(const Garment& garment, const Points& x, const TriMesh& body);
+
+/// By how little the garment as a whole is to be moved up or down, within 20 cm, for the body to be between the sides of none of
+/// these stitches (1 each), m; nothing when it always is.
+std::optional<double> height_free_for(const Garment& garment, const Points& x, const TriMesh& body, const std::vector<char>& stitches);
 
 } // namespace toile

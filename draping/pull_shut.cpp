@@ -137,9 +137,11 @@ void hang(DrapeRun& run, const Garment& open, const Waiting& waiting, ClothProbl
     problem.gravity = 0;
 }
 
-/// When a seam is sewn: what lies inside first, then what hangs from it, then the sides that wait until it
-/// hangs.
-int turn_of(const Garment& open, const Waiting& waiting, const Stitch& s) {
+/// When a seam is sewn: what is to be closed first, or lies inside, then the others, or what hangs from it, then the sides that
+/// wait until it hangs.
+int turn_of(const Garment& open, const Sewing& way, const Stitch& s) {
+    if (!way.first.empty()) return !way.first[s.seam];
+    const Waiting& waiting = way.waiting;
     if (waiting.seams.empty()) return 0;
     if (waiting.seams[s.seam]) return 2;
     return waiting.outside[open.panel_of_vertex[s.a]] || waiting.outside[open.panel_of_vertex[s.b[0]]];
@@ -241,7 +243,7 @@ Sewn pull_shut(DrapeRun& run, const Start& start, const Sewing& way) {
         some.stitches.clear();
         for (std::size_t k = 0; k < open.stitches.size(); ++k) {
             const Stitch& s = open.stitches[k];
-            const int its = turn_of(open, way.waiting, s);
+            const int its = turn_of(open, way, s);
             if (its > turn) continue;
             some.stitches.push_back(s);
             if (its < turn || problem.stitches[k].stiffness > 0) continue;
@@ -252,7 +254,7 @@ Sewn pull_shut(DrapeRun& run, const Start& start, const Sewing& way) {
     if (!problem.sheet()->creases.empty()) press_creases(run, problem, sewn.x, factor);
     const bool some_wait = !way.waiting.seams.empty();
     double gap = close(0);
-    if (some_wait) gap = close(1);
+    if (some_wait || !way.first.empty()) gap = close(1);
     for (int k = 0; some_wait && k < most_hangings && gap < gaping && !run.stopped; ++k) {
         hang(run, open, way.waiting, problem, sewn.x, factor);
         if (k == 0) sew_by_machine(run, open, way, problem, sewn.x, factor);

@@ -23,6 +23,7 @@ struct Start {
 struct Sewing {
     bool self = true; ///< with contact between panels
     bool hooks = true; ///< carrying edges are held at their height; never where the garment was moved up or down
+    std::vector<char> first = {}; ///< by seam: these close before the others; empty: all at once
     Waiting waiting = {};  ///< until the other seams are closed and the cloth hangs, and are then
     bool careful = false;  ///< sewn one stitch at a time
 };

@@ -21,7 +21,7 @@ constexpr double repulsion = 1e3;       // N/m, of springs that act by a tenth o
 constexpr double penalty_share = 0.25;  // of m / dt2: a stiffer spring, with its dampers, does not bear such steps
 constexpr double damper_share = 0.05;   // of m / dt
 constexpr double depth = 10e-3;         // m: lists of pairs grow long with it
-constexpr int steps_per_iteration = 4;  // a motion takes more steps than Newton's method
+constexpr int steps_per_iteration = 8;  // a motion takes more steps than Newton's method
 constexpr ContactOptions no_contact{{1, 0, 0}, {1, 0, 0}, false};
 
 ResponseOptions response_options(const DrapeRun& run, const ClothProblem& problem, double step) {

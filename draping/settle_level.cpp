@@ -217,13 +217,18 @@ void settle_level(DrapeRun& run) {
         passes.insert(passes.end() - 1, {1, 100, true});
         problem.friction.coefficient = problem.cloth_friction.coefficient = 0;
     }
+    const bool carried = !acting.hooks.empty() || !pinned_places(run.staging, run.level, run.garment).empty();
     SettleResult r;
     TightWatch tight{run};
     RestResult rest;
     for (const Pass& pass : passes) {
         if (run.stopped) break;
         const bool last_pass = &pass == &passes.back();
-        if (sheet) soften(run, *sheet, acting, pass.softness);
+        if (sheet) {
+            soften(run, *sheet, acting, pass.softness);
+            // What nothing but its own fit carries would be stretched by its weight and slide down.
+            acting.gravity = run.options.gravity * (carried ? 1 : pass.softness);
+        }
         if (!pass.hooked && acting.hooks.size() > kept.size()) {
             note_release(run);
             acting.hooks = kept;

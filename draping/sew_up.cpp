@@ -12,6 +12,7 @@ namespace toile {
 
 namespace {
 
+constexpr int heights_tried = 4; // for seams that close first, up or down to where their threads are free
 constexpr double slipped = 0.02; // m, down while it is sewn
 
 /// Closes the stitches that are as good as closed and leaves the others open.
@@ -112,6 +113,10 @@ void sew_coarsest(DrapeRun& run) {
         }
     if (!done && sewn.open && !all_hooked(run).empty()) // hooks may hold a bodice lower than its shoulders reach
         done = closes(as_filed, {.self = true, .hooks = false}) || closes(as_filed, {.self = false, .hooks = false});
+    if (!done && sewn.open && !waiting.seams.empty()) // a waist that closes first may draw a crotch up to where it cannot close
+        if (const auto free = height_free_for(staged.garment, run.laid.x, run.body, stitches_through_body(staged.garment, sewn.x, run.body)))
+            for (int k = 0; k <= (run.staging.pins.empty() ? heights_tried : 0) && !done && sewn.open; ++k)
+                done = closes(place(run, *free * k / heights_tried), {.first = waiting.seams});
     if (!done && sewn.open && !waiting.seams.empty()) {
         const Start hung = place(run, 0, waiting.outside);
         if (!closes(hung, {.waiting = waiting}) && (sewn.open || !comes_apart(run, sewn))) {
@@ -124,8 +129,8 @@ void sew_coarsest(DrapeRun& run) {
     run.x = merge(run.garment, run.joined, sewn.x);
     if (sewn.start.lift != 0)
         run.result.decisions.push_back(
-            text("the garment was moved %s by %.0f mm before sewing: where the file puts it threads of seams that "
-                 "could not close pass through the body",
+            text("the garment was moved %s by %.0f mm before sewing: where the file puts it seams could not close that had the body between "
+                 "their sides",
                  sewn.start.lift > 0 ? "up" : "down", 1e3 * std::abs(sewn.start.lift)));
     note_pushes(run, sewn.start.placed);
     run.open = sewn.open;
@@ -137,6 +142,8 @@ void sew_coarsest(DrapeRun& run) {
         if (!sewn.way.waiting.seams.empty())
             run.result.decisions.push_back("seams with the body in their way were sewn when the others were closed "
                                            "and the cloth hung down: all at once could not close");
+        if (!sewn.way.first.empty())
+            run.result.decisions.push_back("seams that had the body between their sides when all were drawn shut at once were sewn first, and the others after them");
         if (!sewn.way.hooks)
             run.result.decisions.push_back("carrying edges were not held at their height while seams closed: held there a seam stayed open");
         if (sewn.way.careful)

@@ -146,11 +146,13 @@ Json accuracy(const AccuracyReport& a) {
     for (const AccuracyDecision& d : a.decisions)
         decisions.push_back({{"decision", d.what}, {"measure", d.measure}, {"value", d.value}, {"taken_back", d.taken_back}});
     const auto or_null = [](const std::optional<double>& v) { return v ? Json(*v) : Json(nullptr); };
-    return {{"asked", or_null(a.asked)},
+    return {{"of", a.of == AccuracyOf::strain ? "strain" : "place"},
+            {"asked", or_null(a.asked)},
             {"budget", or_null(a.budget)},
             {"estimate", or_null(a.estimate)},
             {"discretisation", a.discretisation},
             {"residual", a.residual},
+            {"model", a.model},
             {"order", a.order},
             {"met", a.met},
             {"meshes", meshes},

@@ -127,7 +127,8 @@ void summarise_motion(std::ostream& out, const MotionReport& m) {
 }
 
 void summarise_accuracy(std::ostream& out, const AccuracyReport& a) {
-    out << "accuracy: " << (a.estimate ? "about " + show_length(*a.estimate) : "unknown") << (a.asked ? " of " + show_length(*a.asked) : text(" in %g s", *a.budget))
+    const auto show = [&](double error) { return a.of == AccuracyOf::strain ? text("%.2g %% of strain", 100 * error) : show_length(error); };
+    out << "accuracy: " << (a.estimate ? "about " + show(*a.estimate) : "unknown") << (a.asked ? " of " + show(*a.asked) : text(" in %g s", *a.budget))
         << (a.met ? "" : ", not met") << ", meshes of";
     for (const AccuracyMesh& m : a.meshes) out << text(" %.3g", 1e3 * m.edge_length);
     out << " mm\n";
@@ -206,31 +207,51 @@ std::string joined_by_bars(const std::vector<std::string>& names) {
     return text;
 }
 
-/// --accuracy, which is without a default: a length, or a duration.
-void add_accuracy(CLI::App& command, DrapeJob& job) {
-    constexpr double least = 1e-4, most = 0.05;          // m: below it rounding of contact would count, above it any mesh does
-    constexpr double least_time = 1, most_time = 1e5;    // s
-    const auto set = [&job](const std::string& word) {
-        job.accuracy = job.accuracy_seconds = 0;
+/// What --accuracy takes of one kind, and its range.
+struct AskedKind {
+    double (*parse)(const std::string&);
+    double least, most;
+    std::string range;
+    void (*set)(DrapeJob&, double);
+};
+
+const std::vector<AskedKind>& asked_kinds() {
+    static const std::vector<AskedKind> kinds{
+        // below a tenth of a millimetre rounding of contact would count, above 5 cm any mesh does
+        {parse_length, 1e-4, 0.05, "0.1 mm to 50 mm", [](DrapeJob& job, double v) { job.accuracy = v; }},
+        {parse_share, 1e-4, 0.2, "0.01% to 20% of strain",
+         [](DrapeJob& job, double v) { job.accuracy = v, job.accuracy_of = AccuracyOf::strain; }},
+        {parse_duration, 1, 1e5, "1 s to 1e5 s", [](DrapeJob& job, double v) { job.accuracy_seconds = v; }}};
+    return kinds;
+}
+
+/// --accuracy, which is without a default: an error of place, one of strain, or a time.
+void set_accuracy(DrapeJob& job, const std::string& word) {
+    job.accuracy = job.accuracy_seconds = 0;
+    job.accuracy_of = AccuracyOf::place;
+    std::string ranges;
+    for (const AskedKind& kind : asked_kinds()) {
+        ranges += (ranges.empty() ? "" : ", ") + kind.range;
+        double value = 0;
         try {
-            job.accuracy = parse_length(word);
-        } catch (const CommandLineError& no_length) {
-            try {
-                job.accuracy_seconds = parse_duration(word);
-            } catch (const CommandLineError&) {
-                throw CLI::ValidationError("--accuracy", no_length.what() + std::string(", or a time such as 30s"));
-            }
+            value = kind.parse(word);
+        } catch (const CommandLineError&) {
+            continue; // another kind
         }
-        if (job.accuracy_seconds > 0 ? job.accuracy_seconds < least_time || job.accuracy_seconds > most_time
-                                     : job.accuracy < least || job.accuracy > most)
-            throw CLI::ValidationError("--accuracy", word + " is outside " + show_length(least) + " to " + show_length(most) +
-                                                         text(", or %g to %g s", least_time, most_time));
-    };
+        if (value < kind.least || value > kind.most) throw CLI::ValidationError("--accuracy", word + " is outside " + kind.range);
+        kind.set(job, value);
+        return;
+    }
+    throw CLI::ValidationError("--accuracy", "'" + word + "' is not a length such as 2mm, a strain such as 0.5% or a time such as 30s (" + ranges + ")");
+}
+
+void add_accuracy(CLI::App& command, DrapeJob& job) {
     command
-        .add_option_function<std::string>("--accuracy", set,
-                                          "Error that the drape may have, or time to make it as small as it goes: meshes are chosen for "
-                                          "it during the run, by docs/accuracy.md")
-        ->type_name("LENGTH|DURATION");
+        .add_option_function<std::string>(
+            "--accuracy", [&job](const std::string& word) { set_accuracy(job, word); },
+            "Error that the drape may have, of place or of strain, or time to make it as small as it goes: meshes are chosen for "
+            "it during the run, by docs/accuracy.md")
+        ->type_name("LENGTH|PERCENT|DURATION");
 }
 
 /// --method and what only some methods have.

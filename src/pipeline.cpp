@@ -110,7 +110,7 @@ std::string input_hash(const DrapeJob& job, const std::vector<std::string>& file
          {double(how.limits.sweeps), how.time_step, how.damping_time, how.beyond, job.form.height, job.form.bust, job.form.waist, job.form.hip, job.edge_length, job.drape.tolerance,
           job.drape.clearance, job.drape.friction, job.drape.cloth_friction, job.drape.gravity})
         hash.add(std::to_string(value) + ' ');
-    if (is_to_accuracy(job)) hash.add(std::to_string(job.accuracy) + ' ' + std::to_string(job.accuracy_seconds) + " accuracy ");
+    if (is_to_accuracy(job)) hash.add(std::to_string(job.accuracy) + ' ' + std::to_string(job.accuracy_seconds) + (job.accuracy_of == AccuracyOf::strain ? " accuracy of strain " : " accuracy "));
     if (const AnimateOptions& a = job.drape.animation; is_animated(job.drape))
         for (const double value : {a.duration, a.rate, a.air_damping}) hash.add(std::to_string(value) + " animation ");
     return hash.text();
@@ -188,6 +188,7 @@ void refuse_meshes_of_their_own(const DrapeJob& job, const Pattern& pattern) {
 
 AccuracyOptions accuracy_options(const DrapeJob& job, const Pattern& pattern) {
     AccuracyOptions o;
+    o.of = job.accuracy_of;
     o.asked = job.accuracy;
     if (job.accuracy_seconds > 0) o.budget = job.accuracy_seconds;
     o.finest = std::max(o.finest, finest_edge(pattern, job.drape.max_memory));

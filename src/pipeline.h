@@ -21,7 +21,8 @@ struct DrapeJob {
     bool repair_avatar = false;
     std::string fabric;        ///< preset or file; empty: what the pattern says, else poplin
     double edge_length = 0.01; ///< m, mean edge of the finest mesh; a staged mesh keeps its own
-    double accuracy = 0;         ///< m, RMS; not 0: edge lengths are chosen for it, and edge_length is not used
+    double accuracy = 0;         ///< RMS error; not 0: edge lengths are chosen for it, and edge_length is not used
+    AccuracyOf accuracy_of = AccuracyOf::place; ///< what it is of: m, or a share
     double accuracy_seconds = 0; ///< s; not 0: they are chosen such that the error gets as small as it goes in that time
     std::string from;          ///< garment file to start from; empty: the pattern's own placement
     DrapeOptions drape;

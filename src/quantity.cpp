@@ -40,6 +40,8 @@ const Quantity size_of_memory{
     {{"MB", 1e6, 1}, {"MiB", 0x1p20, 1}, {"GB", 1e9, 1}, {"GiB", 0x1p30, 1}},
     show_size};
 
+const Quantity share_of_something{"a share", "0.2%", {{"%", 1, 100}}, [](double share) { return text("%g %%", 100 * share); }};
+
 /// "mm, cm or m", each after `prefix`.
 std::string list(const Quantity& q, const std::string& prefix) {
     std::string text;
@@ -80,6 +82,8 @@ CLI::Option* add(const Quantity& q, CLI::App& command, const std::string& name, 
 double parse_length(const std::string& text) { return parse(length_of_something, text); }
 
 double parse_duration(const std::string& text) { return parse(duration, text); }
+
+double parse_share(const std::string& text) { return parse(share_of_something, text); }
 
 double parse_size(const std::string& text) { return parse(size_of_memory, text); }
 

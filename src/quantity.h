@@ -17,6 +17,9 @@ double parse_length(const std::string& text);
 /// "90s", "5min", "1h", "2ms", "50us" in seconds. Throws CommandLineError when the unit is missing or it is no duration.
 double parse_duration(const std::string& text);
 
+/// "0.2%" as 0.002. Throws CommandLineError when the sign is missing or it is no number.
+double parse_share(const std::string& text);
+
 /// "500MB", "500MiB", "2GB", "2GiB" in bytes. Throws CommandLineError when the unit is missing or it is no size.
 double parse_size(const std::string& text);
 

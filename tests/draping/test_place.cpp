@@ -200,6 +200,27 @@ TEST_CASE("a seam is not moved through the body to the other side of it") {
     CHECK(free_height(c.garment, c.x, body) == Approx(-0.03));
 }
 
+TEST_CASE("the least move of a garment that frees some of its stitches") {
+    const TriMesh body = sphere(0.05, 3);
+    Cloth c;
+    for (const double z : {0.2, -0.2}) add_front(c, {0, 0, z});
+    for (const int row : {3, 7, 10}) { // at -4, 4 and 10 cm
+        const int a = 11 * row + 5;
+        c.garment.stitches.push_back({a, {a + 121, a + 121}, 0, 0, 0.02});
+    }
+    const std::vector<char> through = stitches_through_body(c.garment, c.x, body);
+    CHECK(through[0]);
+    CHECK(through[1]);
+    CHECK_FALSE(through[2]);
+    const auto lowest = height_free_for(c.garment, c.x, body, {1, 0, 0}), upper = height_free_for(c.garment, c.x, body, {0, 1, 0});
+    REQUIRE(lowest);
+    REQUIRE(upper);
+    CHECK(*lowest == Approx(-0.01).margin(1e-9));
+    CHECK(*upper == Approx(0.01).margin(1e-9));
+    CHECK(height_free_for(c.garment, c.x, body, {0, 0, 0}) == 0.0);
+    CHECK_FALSE(height_free_for(c.garment, c.x, box({-0.1, -1, -0.1}, {0.1, 1, 0.1}), {0, 1, 0}));
+}
+
 TEST_CASE("a garment moves up as a whole where its seams can close over the body, and only there") {
     // Front and back that end 3 cm below the top of a ball and are to be sewn together there.
     const auto height_of = [](double top) {

@@ -4,6 +4,8 @@
 #include "tests/support/temp_folder.h"
 #include "tests/support/test_data.h"
 
+#include <algorithm>
+
 using namespace toile;
 using namespace toile::test;
 
@@ -36,6 +38,27 @@ TEST_CASE("real skirt with godets drapes") { drape_real("godet_skirt", "mean_fem
 TEST_CASE("real ruffled skirt drapes") { drape_real("two_panel_skirt_ruffled", "mean_all", "poplin"); }
 TEST_CASE("real short trousers drape") { drape_real("shorts", "mean_male", "poplin"); }
 TEST_CASE("real jumpsuit drapes") { drape_real("jumpsuit", "mean_all", "jersey"); }
+
+// Drawn shut all at once, their waist is drawn above the hips and the crotch into the body; and nothing but their fit carries them.
+TEST_CASE("real trousers without labels sit at the waist") {
+    const auto pattern = test_data("garmentcode_2021/pants_straight_sides.json");
+    const auto avatar = test_data("bodies/f_smpl_template.obj");
+    if (!pattern || !avatar) return;
+    const TempFolder folder;
+    DrapeJob job;
+    job.pattern = *pattern;
+    job.avatar = *avatar;
+    job.fabric = "jersey";
+    job.edge_length = 0.03;
+    job.garments = {folder / "a.obj"};
+    const DrapeOutcome drape = run_job(job);
+    INFO(drape.result.where);
+    REQUIRE(drape.result.status == DrapeStatus::converged);
+    const auto top = std::max_element(drape.result.state.positions.begin(), drape.result.state.positions.end(),
+                                      [](const Vec3& a, const Vec3& b) { return a.y() < b.y(); });
+    CHECK(top->y() > -0.2); // the hips are widest at -0.31 m, the waist at -0.05 m slightest
+    CHECK(top->y() < 0);
+}
 
 // One side of its collar is sewn through the front and comes out only as a mesh of its own. (The file turns the sides of its
 // collars over, so that the look for turned sides does not apply.)

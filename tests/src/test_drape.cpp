@@ -254,6 +254,22 @@ TEST_CASE("a drape to an accuracy says what it decided and is as near as it says
     CHECK(nlohmann::json::parse(compared.out)["rms"].get<double>() < 0.005);
 }
 
+TEST_CASE("a drape may be as accurate in its strains as asked") {
+    const TempFolder folder;
+    const Run r = run_toile({"drape", tee, "--accuracy", "1%", "-o", folder / "a.obj", "--report", folder / "a.json"});
+    INFO(r.err);
+    REQUIRE(r.code == 0);
+    CHECK_THAT(r.out, Contains("% of strain"));
+    const nlohmann::json report = load_json(folder / "a.json"), a = report["accuracy"];
+    CHECK(Schema("report.schema.json").complaints(report.dump()) == "");
+    CHECK(a["of"] == "strain");
+    CHECK(a["asked"] == 0.01);
+    CHECK(a["met"] == true);
+    CHECK(a["estimate"].get<double>() <= 0.01);
+    REQUIRE(a["meshes"].size() >= 2);
+    CHECK(a["meshes"][1]["difference"].get<double>() > 1e-4);
+}
+
 TEST_CASE("a drape may be as accurate as a time allows") {
     const TempFolder folder;
     const Run r = run_toile({"drape", tee, "--accuracy", "12s", "-o", folder / "a.obj", "--report", folder / "a.json"});
@@ -281,7 +297,7 @@ TEST_CASE("what a drape to an accuracy chooses cannot be asked for as well") {
     CHECK_THAT(refusal({"--contact", "penalty"}), Contains("--contact"));
     CHECK_THAT(refusal({"--animate", "1s", "-o", "never.obj"}), Contains("--animate"));
     CHECK_THAT(refusal({"--from", "never.obj"}), Contains("--from"));
-    for (const char* what : {"5", "2kg", "0.1s", "1m"}) {
+    for (const char* what : {"5", "2kg", "0.1s", "1m", "50%", "0%", "x%"}) {
         const Run r = run_toile({"drape", tee, "--accuracy", what, "--report", "never.json"});
         CHECK(r.code == 1);
         CHECK(one_sentence(r.err));

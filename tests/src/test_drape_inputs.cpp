@@ -183,6 +183,14 @@ TEST_CASE("an elastic waist is drawn in and keeps the skirt up, and its cloth ke
     CHECK(fallen["levels"].back()["iterations"] < 1000); // it is not followed for ever
     CHECK_THAT(fallen["where"].get<std::string>(), Contains("lower_interface") && Contains("slid"));
 
+    for (auto& panel : pattern["pattern"]["panels"])
+        for (auto& edge : panel["edges"]) edge.erase("label");
+    write_text(folder / "bare.json", pattern.dump());
+    write_text(folder / "bare.toile.json", R"({"toile": 1, "fabric": "poplin"})");
+    const auto bare = drape({folder / "bare.json", "--edge-length", "60mm", "-o", folder / "bare.obj"}, 3);
+    CHECK(bare["status"] == "slid_off");
+    CHECK_THAT(bare["where"].get<std::string>(), Contains("no labelled edge") && Contains("slid down"));
+
     write_text(folder / "wide.toile.json", R"({"toile": 1, "fabric": "poplin",
         "elastics": [{"label": "lower_interface", "ratio": 0.7, "stiffness": 30}]})");
     const auto report = drape({folder / "wide.json", "--edge-length", "40mm", "-o", folder / "a.obj"});

@@ -217,7 +217,7 @@ void settle_level(DrapeRun& run) {
         passes.insert(passes.end() - 1, {1, 100, true});
         problem.friction.coefficient = problem.cloth_friction.coefficient = 0;
     }
-    const bool carried = !acting.hooks.empty() || !pinned_places(run.staging, run.level, run.garment).empty();
+    const bool carried = !all_hooked(run).empty() || !pinned_places(run.staging, run.level, run.garment).empty();
     SettleResult r;
     TightWatch tight{run};
     RestResult rest;

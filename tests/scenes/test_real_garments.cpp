@@ -5,25 +5,32 @@
 #include "tests/support/test_data.h"
 
 #include <algorithm>
+#include <optional>
 
 using namespace toile;
 using namespace toile::test;
 
 namespace {
 
-void drape_real(const std::string& name, const std::string& body, const std::string& fabric) {
-    const auto pattern = test_data("garmentcode/" + name + "_specification.json");
-    const auto avatar = test_data("bodies/" + body + ".obj");
-    if (!pattern || !avatar) return;
-    const TempFolder folder;
+/// A pattern on a body, both of the test data; nothing where there is none.
+std::optional<DrapeJob> real_job(const std::string& pattern, const std::string& body, const std::string& fabric, double edge_length) {
+    const auto file = test_data(pattern), avatar = test_data("bodies/" + body + ".obj");
+    if (!file || !avatar) return std::nullopt;
     DrapeJob job;
-    job.pattern = *pattern;
+    job.pattern = *file;
     job.avatar = *avatar;
     job.fabric = fabric;
-    job.edge_length = 0.03;
-    job.garments = {folder / "a.obj", folder / "a.glb"};
+    job.edge_length = edge_length;
+    return job;
+}
+
+void drape_real(const std::string& name, const std::string& body, const std::string& fabric) {
+    auto job = real_job("garmentcode/" + name + "_specification.json", body, fabric, 0.03);
+    if (!job) return;
+    const TempFolder folder;
+    job->garments = {folder / "a.obj", folder / "a.glb"};
     // Triangles of 30 mm are coarse for gathers and necks; ruffles and open fronts turn over here and there.
-    drape_soundly(job, fabric, 0.1, 0.95);
+    drape_soundly(*job, fabric, 0.1, 0.95);
 }
 
 } // namespace
@@ -41,17 +48,11 @@ TEST_CASE("real jumpsuit drapes") { drape_real("jumpsuit", "mean_all", "jersey")
 
 // Drawn shut all at once, their waist is drawn above the hips and the crotch into the body; and nothing but their fit carries them.
 TEST_CASE("real trousers without labels sit at the waist") {
-    const auto pattern = test_data("garmentcode_2021/pants_straight_sides.json");
-    const auto avatar = test_data("bodies/f_smpl_template.obj");
-    if (!pattern || !avatar) return;
+    auto job = real_job("garmentcode_2021/pants_straight_sides.json", "f_smpl_template", "jersey", 0.03);
+    if (!job) return;
     const TempFolder folder;
-    DrapeJob job;
-    job.pattern = *pattern;
-    job.avatar = *avatar;
-    job.fabric = "jersey";
-    job.edge_length = 0.03;
-    job.garments = {folder / "a.obj"};
-    const DrapeOutcome drape = run_job(job);
+    job->garments = {folder / "a.obj"};
+    const DrapeOutcome drape = run_job(*job);
     INFO(drape.result.where);
     REQUIRE(drape.result.status == DrapeStatus::converged);
     const auto top = std::max_element(drape.result.state.positions.begin(), drape.result.state.positions.end(),
@@ -63,20 +64,14 @@ TEST_CASE("real trousers without labels sit at the waist") {
 // One side of its collar is sewn through the front and comes out only as a mesh of its own. (The file turns the sides of its
 // collars over, so that the look for turned sides does not apply.)
 TEST_CASE("a real collar that stays tangled comes apart") {
-    const auto pattern = test_data("garmentcode/rand_005_specification.json");
-    const auto avatar = test_data("bodies/mean_all.obj");
-    if (!pattern || !avatar) return;
+    auto job = real_job("garmentcode/rand_005_specification.json", "mean_all", "poplin", 0.02);
+    if (!job) return;
     const TempFolder folder;
-    DrapeJob job;
-    job.pattern = *pattern;
-    job.avatar = *avatar;
-    job.fabric = "poplin";
-    job.edge_length = 0.02;
-    job.garments = {folder / "a.obj"};
-    const DrapeOutcome drape = run_job(job);
+    job->garments = {folder / "a.obj"};
+    const DrapeOutcome drape = run_job(*job);
     INFO(drape.result.where);
     CHECK(drape.result.status == DrapeStatus::converged);
-    const ReadGarment g = read_garment(job.garments[0]);
+    const ReadGarment g = read_garment(job->garments[0]);
     const Inspection i = inspect(g.garment, g.x, drape.body, PanelFabrics(g.garment.panel_names.size(), fabric_preset("poplin")));
     CHECK(i.intersections.cloth_avatar == 0);
     CHECK(i.intersections.cloth_cloth == 0);

@@ -38,7 +38,7 @@ struct AccuracyReport {
     std::optional<double> asked;             ///< nothing: there was a budget
     std::optional<double> budget;            ///< s
     std::optional<double> estimate;          ///< of the last mesh; nothing: there was but one
-    double discretisation = 0, residual = 0, model = 0; ///< what of the estimate the mesh, the forces left and a lighter method make
+    double discretisation = 0, residual = 0; ///< what of the estimate the mesh and the forces left make
     double order = 0;                        ///< power of the edge length that the differences are taken to fall by
     bool met = false;                        ///< estimate <= asked, or in the budget; at rest
     std::vector<AccuracyMesh> meshes;

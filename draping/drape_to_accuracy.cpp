@@ -26,8 +26,6 @@ constexpr double most_finer = 0.5;
 constexpr double curved_most = 0.3;        // of the area: with a tenth, errors grew more than vertices went
 constexpr double aim = 0.7;                // of what is asked: estimates are off by about as much
 constexpr double share_of_residual = 0.1;  // of the error asked for, that iterations may leave
-constexpr double share_of_model = 0.1;     // of the error asked for, that a lighter method may make
-constexpr Method lighter = Method::projective; // the least time to an error where nothing touches, by docs/chart.md
 constexpr double travel = 2;               // of the error asked for: by which cloth may go on from one mesh to the next
 constexpr double left_over_step = 10;      // what was left to rest over the last step at a residual below 1: 2 to 10 were seen
 
@@ -43,7 +41,6 @@ struct AccuracyRun {
     AccuracyReport report = {};
     std::size_t edge_decision = 0; ///< the last about an edge length
     std::optional<std::size_t> self_decision = {}; ///< that contact of the cloth with itself is left out
-    std::optional<std::size_t> method_decision = {}; ///< that a lighter method takes over
     bool out_of_time = false;      ///< the budget did not suffice for the last mesh, which was taken back
 
     bool of_strain() const { return accuracy.of == AccuracyOf::strain; }
@@ -59,7 +56,6 @@ struct AccuracyRun {
     }
     /// Whether contact of the cloth with itself is left out.
     bool alone() const { return self_decision && !report.decisions[*self_decision].taken_back; }
-    Method method() const { return method_decision && !report.decisions[*method_decision].taken_back ? lighter : options.method; }
     int meshes() const { return int(report.meshes.size()); }
     const AccuracyMesh& mesh(int from_last) const { return report.meshes[report.meshes.size() - 1 - from_last]; }
 };
@@ -133,29 +129,6 @@ double difference(const AccuracyRun& run, const DrapeResult& now) {
     return strain_difference(run.result.garment, run.result.state.positions, now.garment, now.state.positions);
 }
 
-/// Where cloth touches nothing, a lighter method has no contact to take turns with. Whether its model will do, the first mesh tells,
-/// brought to rest by it as well.
-void decide_method(AccuracyRun& run, const Staging& first) {
-    const Garment& g = run.result.garment;
-    const Points& x = run.result.state.positions;
-    if (!run.accuracy.lightens || run.result.status != DrapeStatus::converged || !g.stitches.empty() ||
-        clearance_min(node_triangles(g), x, run.avatar.body) <= reach(run) || may_touch_itself(node_triangles(g), x, reach(run)))
-        return;
-    DrapeOptions o = run.options;
-    o.method = lighter;
-    o.from = x;
-    o.max_seconds = std::min(run.options.max_seconds - run.seconds(), run.seconds_left());
-    o.progress = part_of_meshes(run);
-    const DrapeResult by_it = drape(first, run.avatar, run.fabrics, o);
-    const double apart = difference(run, by_it);
-    if (by_it.status != DrapeStatus::converged || !(apart <= share_of_model * run.goal())) return;
-    run.method_decision = run.report.decisions.size();
-    run.report.model = apart;
-    run.decide(text("finer meshes come to rest by %s, which is lighter, since the cloth touches nothing and the mesh of %.3g mm rests nearly alike by both",
-                    to_string(lighter), 1e3 * run.mesh(0).edge_length),
-               run.of_strain() ? "difference of their strains, RMS" : "distance of one from the other, RMS, m", apart);
-}
-
 /// Drapes at this edge length from where the mesh before came to rest.
 void drape_mesh(AccuracyRun& run, double edge_length) {
     const auto start = AccuracyRun::Clock::now();
@@ -169,7 +142,6 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
         decide_self_contact(run);
     }
     const auto drape_once = [&] {
-        o.method = run.method();
         o.self_contact = run.options.self_contact && !run.alone();
         o.max_seconds = std::min(run.options.max_seconds - run.seconds(), run.seconds_left());
         return drape(staging, run.avatar, run.fabrics, o);
@@ -179,14 +151,6 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
         run.report.decisions[*run.self_decision].taken_back = true;
         run.decide(text("contact of the cloth with itself is modelled from the mesh of %.3g mm on, since it came near itself", 1e3 * edge_length),
                    "clearance, m", o.clearance);
-        now = drape_once();
-    }
-    if (run.method() != run.options.method && now.status == DrapeStatus::stalled) {
-        run.report.decisions[*run.method_decision].taken_back = true;
-        run.report.model = 0;
-        run.decide(text("%s again from the mesh of %.3g mm on, which did not come to rest by %s", to_string(run.options.method), 1e3 * edge_length,
-                        to_string(lighter)),
-                   "residual that it came to", std::isfinite(now.residual) ? now.residual : 0);
         now = drape_once();
     }
     if (goes_on && now.status == DrapeStatus::limit && run.seconds_left() <= 0) {
@@ -207,7 +171,6 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
     if (goes_on) mesh.difference = difference(run, now);
     run.result = run.meshes() > 0 ? joined(std::move(run.result), std::move(now)) : std::move(now);
     run.report.meshes.push_back(mesh);
-    if (!goes_on && at_rest(run)) decide_method(run, staging);
 }
 
 /// From the differences of the last meshes.
@@ -220,7 +183,7 @@ void estimate(AccuracyRun& run) {
         r.order = measured_order(*before.difference, *now.difference, run.mesh(2).edge_length, before.edge_length, now.edge_length);
     r.discretisation = expected_change(*now.difference, ratio, r.order);
     r.residual = left_over_step * now.motion / (run.of_strain() ? now.edge_length : 1);
-    r.estimate = r.discretisation + r.residual + r.model;
+    r.estimate = r.discretisation + r.residual;
 }
 
 /// The edge length at which the estimate would be a little below what is asked, if errors fall by the order found.

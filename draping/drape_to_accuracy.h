@@ -18,7 +18,6 @@ struct AccuracyOptions {
     std::optional<double> budget; ///< s of wall time in which the error is to be made as small as it goes; the result then depends on the machine
     double finest = 2e-3;  ///< m, no mesh is finer
     bool ends_early = true; ///< iterations end when they move the cloth by little of what is asked
-    bool lightens = true;  ///< a lighter method takes over where nothing touches and it makes little of a difference
     bool leaves_out_self_contact = true; ///< where cones of normals and boxes show that the cloth cannot touch itself
     bool graded = true;    ///< meshes are as fine as their edge length where the cloth is curved, and coarser elsewhere
     /// The pattern at an edge length, m, and a factor in (0, 1] on it by place (empty: 1), at nested levels.

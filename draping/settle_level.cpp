@@ -13,6 +13,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 
 namespace toile {
 
@@ -57,6 +58,18 @@ bool fell_off(const DrapeRun& run) {
     for (const Vec3& p : run.x) top = std::max(top, p.y());
     for (const Vec3& p : run.body.points) sole = std::min(sole, p.y());
     return !run.body.points.empty() && top < sole;
+}
+
+/// Whether nothing but its own fit carries the garment: it has neither pins nor labelled edges, and ends below the armpits.
+bool carried_by_fit(const DrapeRun& run) {
+    if (!all_hooked(run).empty() || !run.staging.pins.empty() || !run.options.from.empty()) return false;
+    double top = -std::numeric_limits<double>::infinity();
+    for (const Vec3& p : run.staging.levels[0].placed) top = std::max(top, p.y());
+    try {
+        return top < measure_body(run.avatar).armpit_y;
+    } catch (const std::invalid_argument&) { // no figure
+        return false;
+    }
 }
 
 /// Tells when cloth has fallen off, or when cloth that is too short round the body, or that the body could not grow
@@ -217,7 +230,7 @@ void settle_level(DrapeRun& run) {
         passes.insert(passes.end() - 1, {1, 100, true});
         problem.friction.coefficient = problem.cloth_friction.coefficient = 0;
     }
-    const bool carried = !all_hooked(run).empty() || !pinned_places(run.staging, run.level, run.garment).empty();
+    const bool by_fit = carried_by_fit(run);
     SettleResult r;
     TightWatch tight{run};
     RestResult rest;
@@ -226,8 +239,8 @@ void settle_level(DrapeRun& run) {
         const bool last_pass = &pass == &passes.back();
         if (sheet) {
             soften(run, *sheet, acting, pass.softness);
-            // What nothing but its own fit carries would be stretched by its weight and slide down.
-            acting.gravity = run.options.gravity * (carried ? 1 : pass.softness);
+            // Soft cloth that only its fit carries would be stretched by its weight and slide down.
+            acting.gravity = run.options.gravity * (by_fit ? pass.softness : 1);
         }
         if (!pass.hooked && acting.hooks.size() > kept.size()) {
             note_release(run);

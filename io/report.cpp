@@ -152,7 +152,6 @@ Json accuracy(const AccuracyReport& a) {
             {"estimate", or_null(a.estimate)},
             {"discretisation", a.discretisation},
             {"residual", a.residual},
-            {"model", a.model},
             {"order", a.order},
             {"met", a.met},
             {"meshes", meshes},

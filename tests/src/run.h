@@ -30,6 +30,11 @@ inline bool one_sentence(const std::string& err) {
            err.back() == '\n';
 }
 
+inline std::string write_text(const std::string& path, const std::string& text) {
+    std::ofstream(path, std::ios::binary) << text;
+    return path;
+}
+
 /// A skirt of two rectangles, `width` x `height` in the file's units, 100 to the metre, sewn at the sides and
 /// hung well in front of and behind the body.
 inline std::string skirt_pattern(double width = 60, double height = 50) {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 
@@ -31,11 +30,5 @@ public:
 private:
     std::string path_;
 };
-
-/// Returns the path.
-inline std::string write_text(const std::string& path, const std::string& text) {
-    std::ofstream(path, std::ios::binary) << text;
-    return path;
-}
 
 } // namespace toile::test

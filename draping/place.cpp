@@ -313,12 +313,23 @@ std::vector<char> stitches_through_body(const Garment& garment, const Points& x,
 
 std::optional<double> height_free_for(const Garment& garment, const Points& x, const TriMesh& body, const std::vector<char>& stitches) {
     const Obstacle obstacle{body};
+    const std::vector<char> at_first = blocked_threads(garment, x, obstacle, Vec3::Zero());
+    std::vector<char> theirs; // seams that have some of the stitches
+    for (std::size_t k = 0; k < stitches.size(); ++k) {
+        theirs.resize(std::max(theirs.size(), std::size_t(garment.stitches[k].seam + 1)), 0);
+        theirs[garment.stitches[k].seam] |= stitches[k];
+    }
+    std::array<bool, 2> shut{}; // another seam would pass through the body on the way up, on the way down
     for (int k = 0; k * height_step <= highest; ++k)
-        for (const double height : {-k * height_step, k * height_step}) {
+        for (const int down : {1, 0}) {
+            const double height = (down ? -k : k) * height_step;
             const std::vector<char> now = blocked_threads(garment, x, obstacle, {0, height, 0});
             bool any = false;
-            for (std::size_t s = 0; s < now.size(); ++s) any = any || (now[s] && stitches[s]);
-            if (!any) return height;
+            for (std::size_t s = 0; s < now.size(); ++s) {
+                any = any || (now[s] && stitches[s]);
+                if (now[s] && !at_first[s] && !theirs[garment.stitches[s].seam]) shut[down] = true;
+            }
+            if (!any && !shut[down]) return height;
         }
     return std::nullopt;
 }

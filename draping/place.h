@@ -54,7 +54,7 @@ double free_height(const Garment& garment, const Points& x, const TriMesh& body)
 std::vector<char> stitches_through_body(const Garment& garment, const Points& x, const TriMesh& body);
 
 /// By how little the garment as a whole is to be moved up or down, within 20 cm, for the body to be between the sides of none of
-/// these stitches (1 each), m; nothing when it always is.
+/// these stitches (1 each), m, without moving what other seams join through the body; nothing when there is no such height.
 std::optional<double> height_free_for(const Garment& garment, const Points& x, const TriMesh& body, const std::vector<char>& stitches);
 
 } // namespace toile

@@ -97,27 +97,19 @@ void prove_heights(DrapeRun& run) {
     }
 }
 
-struct Heights {
-    double top = 0, mean = 0; ///< m
-};
-Heights heights(const Points& x) {
-    Heights h{-std::numeric_limits<double>::infinity(), 0};
-    for (const Vec3& p : x) h.top = std::max(h.top, p.y()), h.mean += p.y() / double(x.size());
-    return h;
-}
-
 /// Whether a garment that no labelled edge carries has slid over the widest of what it was put on. A hood may fall, a skirt hang down and
 /// come to sit on the hips; that has sunk with its top and on the whole, and is where the body is slighter again.
 void prove_height_without_labels(DrapeRun& run) {
-    if (!all_hooked(run).empty() || !run.staging.pins.empty() || !run.options.from.empty()) return;
-    const Heights placed = heights(run.staging.levels[0].placed), now = heights(run.x);
-    if (placed.top - now.top < slid || placed.mean - now.mean < slid) return;
-    const double widest = widest_girth(run.avatar, now.top, placed.top);
-    if (torso_girth(run.avatar, now.top) > widest - tight) return;
+    if (!nothing_carries(run)) return;
+    const Points& placed = run.staging.levels[0].placed;
+    const double place = top_height(placed), top = top_height(run.x);
+    if (place - top < slid || mean_height(placed) - mean_height(run.x) < slid) return;
+    const double widest = widest_girth(run.avatar, top, place);
+    if (torso_girth(run.avatar, top) > widest - tight) return;
     run.result.status = DrapeStatus::slid_off;
     run.result.where = text("the garment, which has no labelled edge to carry it, slid down: its top is %.0f cm below its place at %.2f m, "
                             "and has passed a girth of %.1f cm",
-                            100 * (placed.top - now.top), placed.top, 100 * widest);
+                            100 * (place - top), place, 100 * widest);
 }
 
 /// What the promises that a residual does not show have come to.

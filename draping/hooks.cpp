@@ -2,6 +2,7 @@
 #include "draping/hooks.h"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 namespace toile {
@@ -87,6 +88,18 @@ std::vector<HookSpring> make_hooks(const Garment& garment, const std::map<std::s
         s.stiffness = s.cap / give;
     }
     return springs;
+}
+
+double top_height(const Points& x) {
+    double top = -std::numeric_limits<double>::infinity();
+    for (const Vec3& p : x) top = std::max(top, p.y());
+    return top;
+}
+
+double mean_height(const Points& x) {
+    double sum = 0;
+    for (const Vec3& p : x) sum += p.y();
+    return sum / double(x.size());
 }
 
 } // namespace toile

@@ -34,4 +34,8 @@ double label_length(const Garment& garment, const std::string& label);
 std::vector<HookSpring> make_hooks(const Garment& garment, const std::map<std::string, double>& heights,
                                    double strength);
 
+/// Heights of the highest and of the mean point, m; minus infinity at the top of none.
+double top_height(const Points& x);
+double mean_height(const Points& x);
+
 } // namespace toile

@@ -54,19 +54,16 @@ bool untangle_as_mesh(DrapeRun& run) {
 /// Whether cloth that nothing else holds is all below the body, which it has slid off: it would fall for ever.
 bool fell_off(const DrapeRun& run) {
     if (!run.held.empty() || !pinned_places(run.staging, run.level, run.garment).empty()) return false;
-    double top = -std::numeric_limits<double>::infinity(), sole = -top;
-    for (const Vec3& p : run.x) top = std::max(top, p.y());
+    double sole = std::numeric_limits<double>::infinity();
     for (const Vec3& p : run.body.points) sole = std::min(sole, p.y());
-    return !run.body.points.empty() && top < sole;
+    return !run.body.points.empty() && top_height(run.x) < sole;
 }
 
 /// Whether nothing but its own fit carries the garment: it has neither pins nor labelled edges, and ends below the armpits.
 bool carried_by_fit(const DrapeRun& run) {
-    if (!all_hooked(run).empty() || !run.staging.pins.empty() || !run.options.from.empty()) return false;
-    double top = -std::numeric_limits<double>::infinity();
-    for (const Vec3& p : run.staging.levels[0].placed) top = std::max(top, p.y());
+    if (!nothing_carries(run)) return false;
     try {
-        return top < measure_body(run.avatar).armpit_y;
+        return top_height(run.staging.levels[0].placed) < measure_body(run.avatar).armpit_y;
     } catch (const std::invalid_argument&) { // no figure
         return false;
     }
@@ -89,6 +86,10 @@ struct TightWatch {
 };
 
 } // namespace
+
+bool nothing_carries(const DrapeRun& run) {
+    return all_hooked(run).empty() && run.staging.pins.empty() && run.options.from.empty();
+}
 
 void soften(const DrapeRun& run, ClothProblem& problem, Loads& loads, double softness) {
     problem.sheet()->softness = softness;

@@ -38,4 +38,7 @@ SettleResult settle_within_limits(DrapeRun& run, ClothProblem& problem, Cholesky
 /// last level gives the result its status, and says where it is held up if it has not converged.
 void settle_level(DrapeRun& run);
 
+/// Whether the garment was sewn with neither labelled edges nor pins to carry it.
+bool nothing_carries(const DrapeRun& run);
+
 } // namespace toile

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/sew_up.h"
 
+#include "draping/hooks.h"
 #include "draping/pull_shut.h"
 #include "draping/take_apart.h"
 #include "geometry/text.h"
@@ -51,12 +52,6 @@ bool comes_apart(DrapeRun run, const Sewn& sewn) {
     run.x = merge(run.garment, run.joined, sewn.x);
     Contact contact(contact_cloth(run.garment), run.body, run.contact_options());
     return take_apart_or_leave_out(run, contact);
-}
-
-double mean_height(const Points& x) {
-    double sum = 0;
-    for (const Vec3& p : x) sum += p.y();
-    return sum / double(x.size());
 }
 
 Start place(const DrapeRun& run, double lift, const std::vector<bool>& outside = {}) {

@@ -45,4 +45,10 @@ Vec2 place_in_triangle(const Garment& g, int t, const Vec2& at) {
     return g.rest.edges[t].inverse() * (at - g.uv[g.triangles[t][0]]);
 }
 
+Vec3 shares_in_triangle(const Garment& g, int triangle, const Vec2& at) {
+    const Vec2 along = place_in_triangle(g, triangle, at);
+    const Vec3 share = Vec3(1 - along.sum(), along.x(), along.y()).cwiseMax(0.0);
+    return share / share.sum();
+}
+
 } // namespace toile

@@ -23,4 +23,7 @@ int nearest_triangle(const Garment& garment, const FlatPanel& panel, const Vec2&
 /// Coordinates of the place along the two edges of the triangle from its first corner; within it they and what is left of 1 are in [0, 1].
 Vec2 place_in_triangle(const Garment& garment, int triangle, const Vec2& at);
 
+/// Shares of the corners at the place; beyond the borders those of a place on them. Not negative, together 1.
+Vec3 shares_in_triangle(const Garment& garment, int triangle, const Vec2& at);
+
 } // namespace toile

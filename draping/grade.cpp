@@ -72,10 +72,8 @@ std::function<double(int panel, const Vec2& at)> over_panels(const Garment& g, s
     for (int p = 0; p < int(g.panel_names.size()); ++p) panels.push_back(flat_panel(g, p));
     return [&g, panels = std::move(panels), of_node = std::move(of_node)](int panel, const Vec2& at) {
         const int t = nearest_triangle(g, panels[panel], at);
-        const Vec2 w = place_in_triangle(g, t, at).cwiseMax(0.0).cwiseMin(1.0);
         const Triangle n = g.nodes(t);
-        const double rest = std::max(0.0, 1 - w.x() - w.y());
-        return (rest * of_node[n[0]] + w.x() * of_node[n[1]] + w.y() * of_node[n[2]]) / (rest + w.x() + w.y());
+        return shares_in_triangle(g, t, at).dot(Vec3(of_node[n[0]], of_node[n[1]], of_node[n[2]]));
     };
 }
 

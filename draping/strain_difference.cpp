@@ -30,14 +30,11 @@ VertexStrains vertex_strains(const Garment& g, const Points& x) {
     return v;
 }
 
-/// Linear in the triangle; beyond its borders as on them.
+/// Linear in the triangle.
 Vec2 strain_in(const Garment& g, const VertexStrains& strains, int t, const Vec2& at) {
-    const Vec2 along = place_in_triangle(g, t, at);
-    Vec3 weight(1 - along.x() - along.y(), along.x(), along.y());
-    weight = weight.cwiseMax(0);
-    weight /= weight.sum();
+    const Vec3 share = shares_in_triangle(g, t, at);
     Vec2 sum = Vec2::Zero();
-    for (int k = 0; k < 3; ++k) sum += weight[k] * strains.strain[g.triangles[t][k]];
+    for (int k = 0; k < 3; ++k) sum += share[k] * strains.strain[g.triangles[t][k]];
     return sum;
 }
 

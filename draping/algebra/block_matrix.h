@@ -31,20 +31,15 @@ public:
         assert(slot >= 0); // the pattern has the block
         for (int c = 0; c < 3; ++c) {
             double* column = column_data(j, slot, c);
-            column[0] += a(0, c);
-            column[1] += a(1, c);
-            column[2] += a(2, c);
+            for (int r = 0; r < 3; ++r) column[r] += a(r, c);
         }
     }
     /// Adds a symmetric block on the diagonal.
     void add_diagonal(int i, const Mat3& a) {
-        double *x = column_data(i, column_[i], 0), *y = column_data(i, column_[i], 1), *z = column_data(i, column_[i], 2);
-        x[0] += a(0, 0);
-        x[1] += a(1, 0);
-        x[2] += a(2, 0);
-        y[1] += a(1, 1);
-        y[2] += a(2, 1);
-        z[2] += a(2, 2);
+        for (int c = 0; c < 3; ++c) {
+            double* column = column_data(i, column_[i], c);
+            for (int r = c; r < 3; ++r) column[r] += a(r, c);
+        }
     }
     /// Adds the symmetric matrix `a` of an element, three rows per node, whose nodes the pattern couples.
     template <std::size_t N>

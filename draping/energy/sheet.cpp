@@ -218,8 +218,7 @@ void sheet_hessian(const Sheet& sheet, const Points& x, HessianKind kind, BlockM
         const bool limited = !sheet.limits.empty() && strain_limit_hessian(sheet.limits[t], x, kind, limit);
         for (int a = 0; a < stretch.count; ++a)
             for (int b = 0; b <= a; ++b) {
-                Mat3 block = stretch.block(a, b);
-                if (sheet.softness != 1) block *= sheet.softness;
+                Mat3 block = sheet.softness * stretch.block(a, b);
                 if (place[a] >= 0 && place[b] >= 0)
                     block.diagonal().array() += bend.stiffness(place[a], place[b]);
                 if (limited && a < 3) block += limit.block<3, 3>(3 * a, 3 * b);

@@ -88,26 +88,16 @@ struct StretchCurvature {
     /// Block of patch nodes a >= b.
     Mat3 block(int a, int b) const {
         const Mat3 &p = pull[a], &l = length[b];
-        Mat3 m; // rows written out: loops of three are not unrolled at -O2, and this is the most frequent of all
-        for (int c = 0; c < 3; ++c) {
-            const double x = l(c, 0), y = l(c, 1), z = l(c, 2);
-            m(0, c) = p(0, 0) * x + p(0, 1) * y + p(0, 2) * z;
-            m(1, c) = p(1, 0) * x + p(1, 1) * y + p(1, 2) * z;
-            m(2, c) = p(2, 0) * x + p(2, 1) * y + p(2, 2) * z;
-        }
-        const double i = identity(a, b);
-        m(0, 0) += i;
-        m(1, 1) += i;
-        m(2, 2) += i;
+        Mat3 m;
+        for (int c = 0; c < 3; ++c)
+            for (int r = 0; r < 3; ++r) m(r, c) = p(r, 0) * l(c, 0) + p(r, 1) * l(c, 1) + p(r, 2) * l(c, 2);
+        for (int r = 0; r < 3; ++r) m(r, r) += identity(a, b);
         for (int k = 0; k < 3; ++k) {
             if (bend[k] == 0) continue;
             const double factor = bend[k] * patch->curve(k, a) * patch->curve(k, b);
             const Vec3& t = turning[k];
-            for (int c = 0; c < 3; ++c) {
-                m(0, c) += factor * t[0] * t[c];
-                m(1, c) += factor * t[1] * t[c];
-                m(2, c) += factor * t[2] * t[c];
-            }
+            for (int c = 0; c < 3; ++c)
+                for (int r = 0; r < 3; ++r) m(r, c) += factor * t[r] * t[c];
         }
         return m;
     }

@@ -2,6 +2,7 @@
 #include "draping/rest/nearest.h"
 
 #include "draping/algebra/cholesky.h"
+#include "geometry/random.h"
 
 #include <Eigen/Eigenvalues>
 
@@ -9,7 +10,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <random>
 
 namespace toile {
 
@@ -149,10 +149,7 @@ Points shaken(const Prescribed& data, Points x, double share, std::uint64_t seed
         const Vec3 n = (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
         for (const int i : t) normal[i] += n;
     }
-    for (std::size_t i = 0; i < x.size(); ++i) {
-        const double unit = double(random() >> 11) * 0x1p-53; // distributions differ between libraries, raw bits do not
-        x[i] += reach * (2 * unit - 1) * normal[i].normalized();
-    }
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += reach * next_signed(random) * normal[i].normalized();
     return x;
 }
 

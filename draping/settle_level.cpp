@@ -77,8 +77,9 @@ struct TightWatch {
     double missing = std::numeric_limits<double>::infinity(); ///< m, when looked at last
 
     bool gives_up(int iteration) {
-        if (iteration == 0 || iteration % tight_every) return false;
+        if (iteration % tight_every) return false;
         if (fell_off(run)) return true;
+        if (iteration == 0 || !run.last_level()) return false;
         const double last = missing;
         missing = find_tightness(run.garment, run.x, run.fabrics).missing;
         return !run.grown || (missing > too_tight && missing > (1 - tight_gain) * last);
@@ -274,7 +275,7 @@ void settle_level(DrapeRun& run) {
             untangle();
         }
         if (tangled && last_pass && !run.stopped && untangle_as_mesh(run)) untangle();
-        if (last_pass && run.last_level()) o.progress = [&tight](int i, double) { return !tight.gives_up(i); };
+        if (last_pass) o.progress = [&tight](int i, double) { return !tight.gives_up(i); };
         const auto some = [&](const SettleOptions& how) { return run.settle_some(problem, run.x, factor, how); };
         if (pass.slides) {
             o.tolerance = sliding_residual;

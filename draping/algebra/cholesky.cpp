@@ -7,6 +7,7 @@
 #include <cholmod.h>
 #include <omp.h>
 
+#include <cassert>
 #include <optional>
 #include <stdexcept>
 
@@ -85,10 +86,15 @@ struct Cholesky::Impl {
         common.nmethods = 1;
         common.method[0].ordering = CHOLMOD_GIVEN;
         common.postorder = 1;
+        single.reset();
         cholmod_sparse s = view(a);
         factor = cholmod_analyze_p(&s, scalar_order.data(), nullptr, 0, &common);
         if (!factor) throw std::runtime_error("CHOLMOD could not analyse the stiffness matrix");
-        single.reset();
+    }
+
+    /// The values in double precision take twice the room of those in single precision, and are rarely needed.
+    void forget_values() {
+        if (factor->xtype != CHOLMOD_PATTERN) cholmod_change_factor(CHOLMOD_PATTERN, 1, 1, 1, 1, factor, &common);
     }
 };
 
@@ -112,6 +118,7 @@ double Cholesky::work() const { return impl_->common.fl; }
 
 bool Cholesky::factorise(const BlockMatrix& a) {
     Impl& m = *impl_;
+    if (m.single) m.single->free_room();
     cholmod_sparse s = Impl::view(a);
     cholmod_factorize(&s, m.factor, &m.common);
     if (m.common.status == CHOLMOD_OUT_OF_MEMORY || m.common.status == CHOLMOD_TOO_LARGE)
@@ -121,6 +128,7 @@ bool Cholesky::factorise(const BlockMatrix& a) {
 
 void Cholesky::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
     Impl& m = *impl_;
+    assert(m.factor->xtype != CHOLMOD_PATTERN);
     cholmod_dense right{};
     right.nrow = right.nzmax = right.d = b.size();
     right.ncol = 1;
@@ -145,9 +153,11 @@ bool Cholesky::factorise_preconditioner(const BlockMatrix& a) {
         pattern.order = static_cast<const int*>(f.Perm);
         m.single.emplace(pattern, a);
     }
+    m.forget_values();
     if (m.single->factorise(a)) return true;
     if (!factorise(a)) return false;
     m.single->take(static_cast<const double*>(m.factor->x));
+    m.forget_values();
     return true;
 }
 

@@ -27,7 +27,7 @@ public:
     /// Numeric factorisation of a matrix with the analysed pattern. False when it is not positive definite.
     bool factorise(const BlockMatrix& a);
 
-    /// x = A^-1 b by the last factorisation, which must have succeeded.
+    /// x = A^-1 b by the last factorise(), which must have succeeded, with no factorise_preconditioner() since: that gives its room back.
     void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
 
     /// A factorisation in single precision where the matrix allows it, several times faster. False when the matrix

@@ -127,7 +127,7 @@ void SupernodalCholesky::size_stacks() {
             for (const int c : children_[s]) top -= update_size(c);
             top += update_size(s);
         }
-        stacks_.emplace_back().room.resize(most);
+        stacks_.emplace_back().size = most;
     }
 }
 
@@ -208,6 +208,7 @@ bool SupernodalCholesky::factorise(const BlockMatrix& a) {
     parallel_for(int(subtrees_.size()), 1, [&](int begin, int end) {
         for (int k = begin; k < end; ++k) {
             stacks_[k].top = 0;
+            stacks_[k].room.resize(stacks_[k].size);
             for (int s = subtrees_[k].first; s <= subtrees_[k].last && definite; ++s)
                 if (!eliminate_in_subtree(s, stacks_[k])) definite = false;
         }
@@ -218,6 +219,11 @@ bool SupernodalCholesky::factorise(const BlockMatrix& a) {
                 if (!eliminate_shared(level[k])) definite = false;
         });
     return definite;
+}
+
+void SupernodalCholesky::free_room() {
+    for (Stack& stack : stacks_) std::vector<float>().swap(stack.room);
+    for (std::vector<float>& update : shared_update_) std::vector<float>().swap(update);
 }
 
 void SupernodalCholesky::take(const double* values) {

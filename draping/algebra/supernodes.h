@@ -35,6 +35,9 @@ public:
     /// Takes the values of a factor computed elsewhere, in the layout of the pattern.
     void take(const double* values);
 
+    /// Frees what a factorisation works in; the next one takes it again.
+    void free_room();
+
     /// x = A^-1 b to about six digits, by the last factor. The same bits for any number of threads.
     void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
 
@@ -48,6 +51,7 @@ private:
     };
     /// The updates that wait for their parents: the last come first.
     struct Stack {
+        std::size_t size = 0; ///< that it needs
         std::vector<float> room;
         std::size_t top = 0;
     };

@@ -25,6 +25,7 @@ struct Cholesky::Impl {
     std::vector<int> order; ///< of points
     double work = 0;        ///< floating-point operations of a factorisation when that order was new
     std::optional<SupernodalCholesky> single; ///< in single precision
+    bool in_double = false;                   ///< the last factorisation was
     cholmod_dense *solution = nullptr, *work_y = nullptr, *work_e = nullptr;
 
     Impl() {
@@ -92,7 +93,8 @@ struct Cholesky::Impl {
         if (!factor) throw std::runtime_error("CHOLMOD could not analyse the stiffness matrix");
     }
 
-    /// The values in double precision take twice the room of those in single precision, and are rarely needed.
+    /// There is room for the values of one factor: those in double precision take twice that of those in single precision,
+    /// and are rarely needed.
     void forget_values() {
         if (factor->xtype != CHOLMOD_PATTERN) cholmod_change_factor(CHOLMOD_PATTERN, 1, 1, 1, 1, factor, &common);
     }
@@ -118,7 +120,8 @@ double Cholesky::work() const { return impl_->common.fl; }
 
 bool Cholesky::factorise(const BlockMatrix& a) {
     Impl& m = *impl_;
-    if (m.single) m.single->free_room();
+    if (m.single) m.single->free_values();
+    m.in_double = true;
     cholmod_sparse s = Impl::view(a);
     cholmod_factorize(&s, m.factor, &m.common);
     if (m.common.status == CHOLMOD_OUT_OF_MEMORY || m.common.status == CHOLMOD_TOO_LARGE)
@@ -154,13 +157,15 @@ bool Cholesky::factorise_preconditioner(const BlockMatrix& a) {
         m.single.emplace(pattern, a);
     }
     m.forget_values();
-    if (m.single->factorise(a)) return true;
-    if (!factorise(a)) return false;
-    m.single->take(static_cast<const double*>(m.factor->x));
-    m.forget_values();
-    return true;
+    m.in_double = false;
+    return m.single->factorise(a) || factorise(a);
 }
 
-void Cholesky::precondition(const Eigen::VectorXd& b, Eigen::VectorXd& x) { impl_->single->solve(b, x); }
+void Cholesky::precondition(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+    if (impl_->in_double)
+        solve(b, x);
+    else
+        impl_->single->solve(b, x);
+}
 
 } // namespace toile

@@ -27,14 +27,14 @@ public:
     /// Numeric factorisation of a matrix with the analysed pattern. False when it is not positive definite.
     bool factorise(const BlockMatrix& a);
 
-    /// x = A^-1 b by the last factorise(), which must have succeeded, with no factorise_preconditioner() since: that gives its room back.
+    /// x = A^-1 b by the last factorise(), which must have succeeded, with no factorise_preconditioner() since: one factor is kept.
     void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
 
-    /// A factorisation in single precision where the matrix allows it, several times faster. False when the matrix
-    /// is not positive definite.
+    /// A factorisation in single precision where the matrix allows it, several times faster, or else in double precision.
+    /// False when the matrix is not positive definite.
     bool factorise_preconditioner(const BlockMatrix& a);
 
-    /// x = A^-1 b to about six digits by the last factorise_preconditioner(), which must have succeeded.
+    /// x = A^-1 b to about six digits by the last factorisation of either kind, which must have succeeded.
     void precondition(const Eigen::VectorXd& b, Eigen::VectorXd& x);
 
 private:

@@ -25,8 +25,8 @@ constexpr int blas_pays = 4096;      // values of a block from which a call of B
 SupernodalCholesky::SupernodalCholesky(const SupernodalPattern& p, const BlockMatrix& a)
     : rows_(p.rows), first_(p.first, p.first + p.count + 1), row_begin_(p.row_begin, p.row_begin + p.count + 1),
       row_(p.row, p.row + p.row_begin[p.count]), order_(p.order, p.order + p.rows),
-      value_begin_(p.value_begin, p.value_begin + p.count + 1), value_(p.value_begin[p.count]),
-      shared_update_(p.count), waiting_(p.count, nullptr), rest_(p.count), x_(p.rows) {
+      value_begin_(p.value_begin, p.value_begin + p.count + 1), shared_update_(p.count), waiting_(p.count, nullptr),
+      rest_(p.count), x_(p.rows) {
     find_tree();
     find_subtrees();
     find_places(a);
@@ -199,6 +199,7 @@ bool SupernodalCholesky::eliminate_shared(int s) {
 }
 
 bool SupernodalCholesky::factorise(const BlockMatrix& a) {
+    value_.resize(value_begin_.back());
     parallel_for(int(value_.size()), 1 << 16,
                  [&](int begin, int end) { std::fill(value_.begin() + begin, value_.begin() + end, 0.0f); });
     parallel_for(int(place_.size()), 1 << 14, [&](int begin, int end) {
@@ -221,15 +222,10 @@ bool SupernodalCholesky::factorise(const BlockMatrix& a) {
     return definite;
 }
 
-void SupernodalCholesky::free_room() {
+void SupernodalCholesky::free_values() {
+    std::vector<float>().swap(value_);
     for (Stack& stack : stacks_) std::vector<float>().swap(stack.room);
     for (std::vector<float>& update : shared_update_) std::vector<float>().swap(update);
-}
-
-void SupernodalCholesky::take(const double* values) {
-    parallel_for(int(value_.size()), 1 << 16, [&](int begin, int end) {
-        for (int i = begin; i < end; ++i) value_[i] = float(values[i]);
-    });
 }
 
 /// Solves for the columns of a supernode; `rest` receives what that takes off the rows below.

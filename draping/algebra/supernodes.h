@@ -32,13 +32,10 @@ public:
     /// False when the matrix is not positive definite to single precision. The same bits for any number of threads.
     bool factorise(const BlockMatrix& a);
 
-    /// Takes the values of a factor computed elsewhere, in the layout of the pattern.
-    void take(const double* values);
+    /// Frees the factor and what a factorisation works in; the next one takes them again.
+    void free_values();
 
-    /// Frees what a factorisation works in; the next one takes it again.
-    void free_room();
-
-    /// x = A^-1 b to about six digits, by the last factor. The same bits for any number of threads.
+    /// x = A^-1 b to about six digits, by the last factor, which must be there. The same bits for any number of threads.
     void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
 
 private:

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <tuple>
 
@@ -33,6 +32,10 @@ bool planes_apart(const std::array<Vec3, 4>& x, bool edge_edge, double reach) {
     const double height = normal.dot(edge_edge ? x[2] - x[0] : x[1] - x[0]);
     return height * height > 1.000001 * reach * reach * normal.squaredNorm();
 }
+
+ListedPair::Kind kind_of(const ListedPair& p) { return ListedPair::Kind(p.kind); }
+bool of_edges(ListedPair::Kind kind) { return kind == ListedPair::edge_edge || kind == ListedPair::edge_body_edge; }
+bool with_body(ListedPair::Kind kind) { return kind != ListedPair::node_triangle && kind != ListedPair::edge_edge; }
 
 Box ball_box(const Vec3& p, double r) { return Box(p.array() - r, p.array() + r); }
 
@@ -183,12 +186,65 @@ Barrier Contact::barrier(const ContactPair& p) const {
     return b;
 }
 
-bool Contact::near_in_cloth(const ContactPair& p) const {
-    const int split = p.edge_edge ? 2 : 1;
+double Contact::reach(ListedPair::Kind kind) const { return (with_body(kind) ? options_.body : options_.cloth).distance; }
+
+std::array<int, 4> Contact::points(const ListedPair& p) const {
+    const int i = int(p.first), j = int(p.second), n = nodes_;
+    switch (p.kind) {
+    case ListedPair::node_triangle: {
+        const Triangle& k = cloth_.triangles[j];
+        return {i, k[0], k[1], k[2]};
+    }
+    case ListedPair::node_body_triangle: {
+        const Triangle& k = body_triangles_[j];
+        return {i, n + k[0], n + k[1], n + k[2]};
+    }
+    case ListedPair::body_point_triangle: {
+        const Triangle& k = cloth_.triangles[j];
+        return {n + i, k[0], k[1], k[2]};
+    }
+    case ListedPair::edge_edge: {
+        const auto &a = cloth_.edges[i], &b = cloth_.edges[j];
+        return {a[0], a[1], b[0], b[1]};
+    }
+    default: {
+        const auto &a = cloth_.edges[i], &b = body_edges_[j];
+        return {a[0], a[1], n + b[0], n + b[1]};
+    }
+    }
+}
+
+ContactPair Contact::pair(const ListedPair& l) const {
+    const ListedPair::Kind kind = kind_of(l);
+    ContactPair p;
+    p.p = points(l);
+    p.edge_edge = of_edges(kind);
+    p.with_body = with_body(kind);
+    p.distance = reach(kind);
+    p.built = l.built;
+    if (l.near_in_cloth)
+        for (int k : p.p) p.distance = std::min(p.distance, 0.5 * cloth_.node_reach[k]);
+    if (!p.edge_edge) {
+        p.weight = kind == ListedPair::body_point_triangle ? body_area_[l.first] : cloth_.node_area[l.first];
+        return p;
+    }
+    const double length2 = cloth_.edge_length[l.first] * cloth_.edge_length[l.first];
+    if (p.with_body) {
+        p.weight = std::min(cloth_.edge_area[l.first], body_edge_area_[l.second]);
+        p.fade = length2 * (body_[p.p[3] - nodes_] - body_[p.p[2] - nodes_]).squaredNorm();
+    } else {
+        p.weight = std::min(cloth_.edge_area[l.first], cloth_.edge_area[l.second]);
+        p.fade = length2 * cloth_.edge_length[l.second] * cloth_.edge_length[l.second];
+    }
+    return p;
+}
+
+bool Contact::near_in_cloth(bool edge_edge, const std::array<int, 4>& points) const {
+    const int split = edge_edge ? 2 : 1;
     for (int a = 0; a < split; ++a)
         for (int b = split; b < 4; ++b) {
-            const auto& ring = ring_[cloth_.group[p.p[a]]];
-            if (std::binary_search(ring.begin(), ring.end(), cloth_.group[p.p[b]])) return true;
+            const auto& ring = ring_[cloth_.group[points[a]]];
+            if (std::binary_search(ring.begin(), ring.end(), cloth_.group[points[b]])) return true;
         }
     return false;
 }
@@ -201,10 +257,10 @@ std::vector<double> Contact::moved_since_built(const Points& x) const {
     return d;
 }
 
-double Contact::moved(const std::vector<double>& d, const ContactPair& p) const {
+double Contact::moved(const std::vector<double>& d, const ListedPair& l, const std::array<int, 4>& p) const {
     const auto of = [&d](int i) { return i < int(d.size()) ? d[i] : 0; }; // a body at rest has no places in the list
-    if (p.edge_edge) return std::max(of(p.p[0]), of(p.p[1])) + std::max(of(p.p[2]), of(p.p[3]));
-    return of(p.p[0]) + std::max({of(p.p[1]), of(p.p[2]), of(p.p[3])});
+    if (of_edges(kind_of(l))) return std::max(of(p[0]), of(p[1])) + std::max(of(p[2]), of(p[3]));
+    return of(p[0]) + std::max({of(p[1]), of(p[2]), of(p[3])});
 }
 
 bool Contact::body_serves(const Points* body_dx) const {
@@ -279,32 +335,32 @@ void Contact::find_pairs(const std::vector<char>& moved_node) {
         return std::any_of(simplex.begin(), simplex.end(), [&](int i) { return i < nodes_ && moved_node[i]; });
     };
     if (built_)
-        std::erase_if(pairs_, [&](const ContactPair& p) { return has_moved(p.p); });
+        std::erase_if(pairs_, [&](const ListedPair& p) { return has_moved(points(p)); });
     else
         pairs_.clear();
 
     // Each query keeps what it finds; queries are put together in their order, whatever thread ran them.
     const auto collect = [&](int queries, auto&& find) {
         const int chunks = (queries + query_chunk - 1) / query_chunk;
-        std::vector<std::vector<ContactPair>> found(chunks);
+        std::vector<std::vector<ListedPair>> found(chunks);
         parallel_for(chunks, 1, [&](int begin, int end) {
             for (int c = begin; c < end; ++c)
                 for (int q = c * query_chunk; q < std::min(queries, (c + 1) * query_chunk); ++q)
-                    find(q, [&](ContactPair p) {
+                    find(q, [&](ListedPair::Kind kind, int first, int second) {
+                        ListedPair l{kind, 0, unsigned(first), unsigned(second)};
+                        const std::array<int, 4> p = points(l);
+                        const bool body = with_body(kind), edge_edge = of_edges(kind);
                         const auto out = [&](int i) { return !left_out_.empty() && left_out_[i]; };
-                        if (!p.with_body && std::any_of(p.p.begin(), p.p.end(), out)) return;
+                        if (!body && std::any_of(p.begin(), p.end(), out)) return;
                         const auto still = [&](int i) { return i >= nodes_ || cloth_.still[i]; };
-                        if (!cloth_.still.empty() && std::all_of(p.p.begin(), p.p.end(), still)) return;
-                        const Barrier& b = p.with_body ? options_.body : options_.cloth;
-                        const auto corner = corners(x, p);
-                        const double reach = b.distance + moved(slack, p);
-                        if (planes_apart(corner, p.edge_edge, reach)) return;
-                        p.distance = b.distance;
-                        p.built = pair_geometry(corner, p.edge_edge).d;
-                        if (p.built > reach) return;
-                        if (!p.with_body && near_in_cloth(p))
-                            for (int k : p.p) p.distance = std::min(p.distance, 0.5 * cloth_.node_reach[k]);
-                        found[c].push_back(p);
+                        if (!cloth_.still.empty() && std::all_of(p.begin(), p.end(), still)) return;
+                        const std::array<Vec3, 4> corner{at(x, p[0]), at(x, p[1]), at(x, p[2]), at(x, p[3])};
+                        const double reach = this->reach(kind) + moved(slack, l, p);
+                        if (planes_apart(corner, edge_edge, reach)) return;
+                        l.built = pair_geometry(corner, edge_edge).d;
+                        if (l.built > reach) return;
+                        l.near_in_cloth = !body && near_in_cloth(edge_edge, p);
+                        found[c].push_back(l);
                     });
         });
         std::size_t total = pairs_.size();
@@ -312,7 +368,7 @@ void Contact::find_pairs(const std::vector<char>& moved_node) {
         pairs_.reserve(total);
         for (auto& f : found) {
             pairs_.insert(pairs_.end(), f.begin(), f.end());
-            std::vector<ContactPair>().swap(f); // lists of millions are not to lie about twice
+            std::vector<ListedPair>().swap(f); // lists of millions are not to lie about twice
         }
     };
     const auto sewn_to = [&](int i, int j) {
@@ -325,55 +381,39 @@ void Contact::find_pairs(const std::vector<char>& moved_node) {
                 if (cloth_.group[i] == cloth_.group[j] || sewn_to(i, j)) return true;
         return false;
     };
-    const auto keep_own = [&](int i, const Triangle& k, auto&& keep) {
-        if (!shares_group({i}, {k[0], k[1], k[2]}))
-            keep({{i, k[0], k[1], k[2]}, false, false, 0, cloth_.node_area[i], 0, 0});
+    const auto keep_own = [&](int i, int t, auto&& keep) {
+        const Triangle& k = cloth_.triangles[t];
+        if (!shares_group({i}, {k[0], k[1], k[2]})) keep(ListedPair::node_triangle, i, t);
     };
 
     collect(nodes_, [&](int i, auto&& keep) {
         if (!moved_node[i]) return;
         const Box box = ball_box(x[i], slack_[i]);
-        body_triangle_tree_.overlapping(grown(box, reach_body), [&](int t) {
-            const Triangle& k = body_triangles_[t];
-            keep({{i, nodes_ + k[0], nodes_ + k[1], nodes_ + k[2]}, false, true, 0, cloth_.node_area[i], 0, 0});
-        });
-        if (options_.self)
-            cloth_triangle_tree_.overlapping(grown(box, reach_cloth),
-                                             [&](int t) { keep_own(i, cloth_.triangles[t], keep); });
+        body_triangle_tree_.overlapping(grown(box, reach_body), [&](int t) { keep(ListedPair::node_body_triangle, i, t); });
+        if (options_.self) cloth_triangle_tree_.overlapping(grown(box, reach_cloth), [&](int t) { keep_own(i, t, keep); });
     });
     collect(triangles, [&](int t, auto&& keep) {
-        const Triangle& k = cloth_.triangles[t];
-        if (!has_moved(k)) return;
-        body_point_tree_.overlapping(grown(triangle_boxes[t], reach_body), [&](int v) {
-            keep({{nodes_ + v, k[0], k[1], k[2]}, false, true, 0, body_area_[v], 0, 0});
-        });
+        if (!has_moved(cloth_.triangles[t])) return;
+        body_point_tree_.overlapping(grown(triangle_boxes[t], reach_body),
+                                     [&](int v) { keep(ListedPair::body_point_triangle, v, t); });
         if (!options_.self) return;
         const Box box = grown(triangle_boxes[t], reach_cloth);
         cloth_triangle_tree_.overlapping(box, [&](int u) { // nodes that have not moved themselves
             for (const int i : cloth_.triangles[u])
                 if (!moved_node[i] && triangle_of_node_[i] == u && box.intersects(ball_box(x[i], slack_[i])))
-                    keep_own(i, k, keep);
+                    keep_own(i, t, keep);
         });
     });
     collect(edges, [&](int e, auto&& keep) {
         const auto& a = cloth_.edges[e];
         if (!has_moved(a)) return;
-        const double length2 = cloth_.edge_length[e] * cloth_.edge_length[e];
-        body_edge_tree_.overlapping(grown(edge_boxes[e], reach_body), [&](int f) {
-            const auto& b = body_edges_[f];
-            const double fade = length2 * (body_[b[1]] - body_[b[0]]).squaredNorm();
-            const double weight = std::min(cloth_.edge_area[e], body_edge_area_[f]);
-            keep({{a[0], a[1], nodes_ + b[0], nodes_ + b[1]}, true, true, 0, weight, fade, 0});
-        });
+        body_edge_tree_.overlapping(grown(edge_boxes[e], reach_body), [&](int f) { keep(ListedPair::edge_body_edge, e, f); });
         if (options_.self)
             cloth_edge_tree_.overlapping(grown(edge_boxes[e], reach_cloth), [&](int f) {
                 const auto& b = cloth_.edges[f];
                 if (f == e || (f < e && has_moved(b))) return; // found by the other
                 if (shares_group({a[0], a[1]}, {b[0], b[1]})) return;
-                const double fade = length2 * cloth_.edge_length[f] * cloth_.edge_length[f];
-                const double weight = std::min(cloth_.edge_area[e], cloth_.edge_area[f]);
-                const auto [low, high] = std::minmax(a, b);
-                keep({{low[0], low[1], high[0], high[1]}, true, false, 0, weight, fade, 0});
+                keep(ListedPair::edge_edge, a < b ? e : f, a < b ? f : e);
             });
     });
 }
@@ -387,8 +427,9 @@ const std::vector<ActivePair>& Contact::active(const Points& x) const {
     parallel_for(chunks, 1, [&](int begin, int end) {
         for (int c = begin; c < end; ++c)
             for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
-                const ContactPair& p = pairs_[i];
-                if (p.built - moved(distance, p) >= p.distance) continue;
+                const ListedPair& l = pairs_[i];
+                if (l.built - moved(distance, l, points(l)) >= reach(kind_of(l))) continue;
+                const ContactPair p = pair(l);
                 const auto corner = corners(x, p);
                 ActivePair a{i, pair_geometry(corner, p.edge_edge), {}};
                 if (a.geometry.d >= p.distance) continue;
@@ -406,7 +447,7 @@ double Contact::value(const std::vector<ActivePair>& active) const {
     const Stopwatch::Lap lap(clock_);
     double sum = 0;
     for (const ActivePair& a : active) {
-        const ContactPair& p = pairs_[a.pair];
+        const ContactPair p = pair(a.pair);
         sum += p.weight * a.fade.value * barrier(p).energy(a.geometry.d);
     }
     return sum;
@@ -415,7 +456,7 @@ double Contact::value(const std::vector<ActivePair>& active) const {
 void Contact::add_gradient(const std::vector<ActivePair>& active, Eigen::VectorXd& g) const {
     const Stopwatch::Lap lap(clock_);
     for (const ActivePair& a : active) {
-        const ContactPair& p = pairs_[a.pair];
+        const ContactPair p = pair(a.pair);
         const Barrier b = barrier(p);
         const double slope = p.weight * a.fade.value * b.slope(a.geometry.d);
         const double energy = a.fade.fading ? p.weight * b.energy(a.geometry.d) : 0;
@@ -432,7 +473,7 @@ bool Contact::add_hessian(const Points& x, const std::vector<ActivePair>& active
     const Stopwatch::Lap lap(clock_);
     bool complete = true;
     for (const ActivePair& a : active) {
-        const ContactPair& p = pairs_[a.pair];
+        const ContactPair p = pair(a.pair);
         const Barrier b = barrier(p);
         const double scale = p.weight * a.fade.value;
         const double curvature = scale * b.curvature(a.geometry.d);
@@ -460,14 +501,16 @@ bool Contact::add_hessian(const Points& x, const std::vector<ActivePair>& active
 
 void Contact::couplings(const std::vector<ActivePair>& active, std::vector<std::pair<int, int>>& pairs) const {
     const Stopwatch::Lap lap(clock_);
-    const auto couple = [&pairs](const ContactPair& p) {
-        if (p.with_body) return; // cloth nodes of one edge or triangle, which the sheet couples
+    const auto couple = [&](const ListedPair& l) {
+        const std::array<int, 4> p = points(l);
         for (int i = 0; i < 4; ++i)
-            for (int j = 0; j < i; ++j) pairs.emplace_back(p.p[i], p.p[j]);
+            for (int j = 0; j < i; ++j) pairs.emplace_back(p[i], p[j]);
     };
-    for (const ActivePair& a : active) couple(pairs_[a.pair]);
-    for (const ContactPair& p : pairs_)
-        if (p.built < 2 * p.distance) couple(p);
+    // Pairs with the body couple nodes of one edge or triangle, which the sheet couples.
+    for (const ActivePair& a : active)
+        if (!with_body(kind_of(pairs_[a.pair]))) couple(pairs_[a.pair]);
+    for (const ListedPair& l : pairs_)
+        if (!with_body(kind_of(l)) && l.built < 2 * reach(kind_of(l)) && l.built < 2 * pair(l).distance) couple(l);
 }
 
 std::vector<double> Contact::lengths(const Eigen::VectorXd& dx, const Points* body_dx) const {
@@ -483,8 +526,10 @@ std::vector<int> Contact::within_reach(const Points& x, const Eigen::VectorXd& d
     const std::vector<double> distance = moved_since_built(x), step = lengths(dx, body_dx);
     std::vector<int> found;
     for (int i = 0; i < int(pairs_.size()); ++i) {
-        const ContactPair& p = pairs_[i];
-        if (p.built - moved(distance, p) - moved(step, p) < p.distance) found.push_back(i);
+        const ListedPair& l = pairs_[i];
+        const std::array<int, 4> p = points(l);
+        const double nearest = l.built - moved(distance, l, p) - moved(step, l, p);
+        if (nearest < reach(kind_of(l)) && nearest < pair(l).distance) found.push_back(i);
     }
     return found;
 }
@@ -504,9 +549,12 @@ double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const 
     parallel_for(chunks, 1, [&](int begin, int end) {
         for (int c = begin; c < end; ++c)
             for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
-                const ContactPair& p = pairs_[i];
+                const ListedPair& l = pairs_[i];
+                const std::array<int, 4> points = this->points(l);
+                const double room = l.built - moved(distance, l, points) - moved(step, l, points);
+                if (room > reach(kind_of(l))) continue;
+                const ContactPair p = pair(l);
                 const Barrier b = barrier(p);
-                const double room = p.built - moved(distance, p) - moved(step, p);
                 if (room > b.distance) continue;
                 Motion m;
                 m.x = corners(x, p);
@@ -525,7 +573,7 @@ double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const 
         for (const auto& [t, i] : found) {
             if (t < least.first) least = {t, i};
             if (!shares) continue;
-            for (const int k : pairs_[i].p)
+            for (const int k : points(pairs_[i]))
                 if (k < int(shares->size())) (*shares)[k] = std::min((*shares)[k], t);
         }
     if (blocking) *blocking = least.second;
@@ -536,7 +584,7 @@ Points Contact::body_forces(const std::vector<ActivePair>& active) const {
     const Stopwatch::Lap lap(clock_);
     Points force(nodes_, Vec3::Zero());
     for (const ActivePair& a : active) {
-        const ContactPair& p = pairs_[a.pair];
+        const ContactPair p = pair(a.pair);
         if (!p.with_body) continue;
         const double slope = p.weight * a.fade.value * barrier(p).slope(a.geometry.d);
         for (int k = 0; k < 4; ++k)
@@ -549,7 +597,7 @@ std::vector<PairForce> Contact::cloth_forces(const std::vector<ActivePair>& acti
     const Stopwatch::Lap lap(clock_);
     std::vector<PairForce> forces;
     for (const ActivePair& a : active) {
-        const ContactPair& p = pairs_[a.pair];
+        const ContactPair p = pair(a.pair);
         if (p.with_body) continue;
         const double press = -p.weight * a.fade.value * barrier(p).slope(a.geometry.d);
         if (press > 0) forces.push_back({p.p, a.geometry.weight, p.edge_edge, press * a.geometry.normal});
@@ -567,8 +615,9 @@ int Contact::widen(Points& x) {
     for (int sweep = 0; sweep < sweeps && near > 0; ++sweep) {
         if (sweep % 10 == 0) violations(x); // makes a new list
         near = 0;
-        for (const ContactPair& p : pairs_) {
-            if (p.with_body) continue;
+        for (const ListedPair& l : pairs_) {
+            if (with_body(kind_of(l))) continue;
+            const ContactPair p = pair(l);
             const double room = 2 * barrier(p).floor;
             const PairGeometry g = pair_geometry(corners(x, p), p.edge_edge);
             if (g.d >= room) continue;
@@ -586,8 +635,8 @@ std::vector<ContactPair> Contact::violations(const Points& x) {
     built_ = false;
     prepare(x, Eigen::VectorXd::Zero(3 * nodes_));
     std::vector<ContactPair> violated;
-    std::copy_if(pairs_.begin(), pairs_.end(), std::back_inserter(violated),
-                 [&](const ContactPair& p) { return p.built <= barrier(p).floor; });
+    for (const ListedPair& l : pairs_)
+        if (const ContactPair p = pair(l); p.built <= barrier(p).floor) violated.push_back(p);
     return violated;
 }
 

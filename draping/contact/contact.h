@@ -58,6 +58,17 @@ struct ContactPair {
     double built = 0;    ///< distance when the list was made
 };
 
+/// What the list keeps of a pair: in tight folds millions are within reach of a long step, and all but a few thousand of
+/// them never act.
+struct ListedPair {
+    enum Kind : unsigned { node_triangle, node_body_triangle, body_point_triangle, edge_edge, edge_body_edge };
+    unsigned kind : 3;
+    unsigned near_in_cloth : 1; ///< too near each other on the cloth for the barrier's full distance
+    unsigned first : 28;  ///< node, body point or edge
+    unsigned second;      ///< triangle or edge
+    double built = 0;     ///< distance when the list was made
+};
+
 /// A pair within reach of its barrier at some state.
 struct ActivePair {
     int pair = 0;
@@ -137,7 +148,7 @@ public:
     /// are too near. For a start that the barrier cannot take but that crosses nothing.
     int widen(Points& x);
 
-    const ContactPair& pair(int i) const { return pairs_[i]; }
+    ContactPair pair(int i) const { return pair(pairs_[i]); }
     /// The four points of a pair, those of the body where it is now.
     std::array<Vec3, 4> corners(const Points& x, const ContactPair& p) const;
     int node_count() const { return nodes_; }
@@ -148,13 +159,16 @@ public:
 private:
     Vec3 at(const Points& x, int i) const { return i < nodes_ ? x[i] : body_[i - nodes_]; }
     Barrier barrier(const ContactPair& p) const;
+    double reach(ListedPair::Kind kind) const;
+    std::array<int, 4> points(const ListedPair& p) const;
+    ContactPair pair(const ListedPair& p) const;
     void find_pairs(const std::vector<char>& moved);
-    double moved(const std::vector<double>& distance, const ContactPair& p) const;
+    double moved(const std::vector<double>& distance, const ListedPair& p, const std::array<int, 4>& points) const;
     std::vector<double> lengths(const Eigen::VectorXd& dx, const Points* body_dx) const;
     std::vector<double> moved_since_built(const Points& x) const;
     bool body_serves(const Points* body_dx) const;
     double slack_for(double step) const;
-    bool near_in_cloth(const ContactPair& p) const;
+    bool near_in_cloth(bool edge_edge, const std::array<int, 4>& points) const;
     void make_body_trees();
 
     mutable Stopwatch clock_;
@@ -172,7 +186,7 @@ private:
 
     std::vector<char> left_out_;
     bool built_ = false;
-    std::vector<ContactPair> pairs_;
+    std::vector<ListedPair> pairs_;
     mutable std::vector<ActivePair> active_; ///< at active_at_, while the list and the body are what they were
     mutable Points active_at_;
     std::vector<int> triangle_of_node_; ///< one of each node's

@@ -41,7 +41,7 @@ void StepPairs::renew() {
 std::optional<Impact> StepPairs::impact(int i) const { return impact(i, nearest_share * pair(i).distance); }
 
 std::optional<Impact> StepPairs::impact(int i, double nearest) const {
-    const ContactPair& p = contact_.pair(i);
+    const ContactPair p = contact_.pair(i);
     Motion m;
     m.x = contact_.corners(step_.x, p);
     for (int k = 0; k < 4; ++k) m.dx[k] = is_node(p.p[k]) ? Vec3(step_.dt * v_[p.p[k]]) : body_dx_[p.p[k] - nodes_];
@@ -54,7 +54,7 @@ std::optional<Impact> StepPairs::impact(int i, double nearest) const {
 }
 
 bool StepPairs::touches(int i) const {
-    const ContactPair& p = contact_.pair(i);
+    const ContactPair p = contact_.pair(i);
     const std::array<Vec3, 4> from = contact_.corners(step_.x, p);
     std::array<Vec3, 4> to;
     for (int k = 0; k < 4; ++k)
@@ -98,7 +98,7 @@ double StepPairs::mobility(int i, const PairGeometry& g) const {
 }
 
 void StepPairs::push(int i, const PairGeometry& g, const Vec3& impulse, bool counts) {
-    const ContactPair& p = pair(i);
+    const ContactPair p = pair(i);
     if (counts && p.with_body) {
         Pushed& pushed = on_body_[{p.p, p.edge_edge}];
         pushed.impulse += impulse;
@@ -138,7 +138,7 @@ void StepPairs::finish(ResponseDone& done, bool holds) {
     for (int i = 0; i < nodes_; ++i) done.other_force[i] = other_[i] / step_.dt;
     if (holds) {
         for (const ActivePair& a : near()) {
-            const ContactPair& p = pair(a.pair);
+            const ContactPair p = pair(a.pair);
             if (!p.with_body || a.geometry.d == 0) continue;
             const auto pushed = on_body_.extract({p.p, p.edge_edge});
             const Vec3 force = pushed ? Vec3(pushed.mapped().impulse / step_.dt) : Vec3::Zero();

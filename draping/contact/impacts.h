@@ -41,7 +41,7 @@ public:
     std::vector<int> reachable() const;
     PairGeometry geometry(int i) const; ///< at the start
 
-    const ContactPair& pair(int i) const { return contact_.pair(i); }
+    ContactPair pair(int i) const { return contact_.pair(i); }
     double inverse_mass(int point) const { return point < nodes_ ? step_.inverse_mass[point] : 0; }
     Vec3 velocity(int point) const { return point < nodes_ ? v_[point] : body_velocity_[point - nodes_]; }
     const Points& body_velocity() const { return body_velocity_; }

@@ -47,7 +47,7 @@ private:
     std::vector<std::vector<int>> faces_of_nodes(StepPairs& pairs, const ResponseStep& step) const {
         std::vector<std::vector<int>> faces(step.x.size());
         for (const int k : pairs.reachable())
-            if (const ContactPair& p = pairs.pair(k); !p.edge_edge && pairs.is_node(p.p[0])) faces[p.p[0]].push_back(k);
+            if (const ContactPair p = pairs.pair(k); !p.edge_edge && pairs.is_node(p.p[0])) faces[p.p[0]].push_back(k);
         return faces;
     }
 

@@ -96,7 +96,7 @@ private:
         std::vector<Overlap> all;
         std::map<std::array<int, 3>, Nearest> on_body; // per node, edge or triangle of the cloth
         for (const ActivePair& a : pairs.near()) {
-            const ContactPair& p = pairs.pair(a.pair);
+            const ContactPair p = pairs.pair(a.pair);
             Overlap o{a.pair, a.geometry, p.distance - a.geometry.d};
             if (!p.with_body) {
                 if (a.geometry.d > 0) all.push_back(o);
@@ -123,7 +123,7 @@ private:
 
     /// Springs and dampers by the velocities at the start of the step: at rest they bear exactly what weighs on them.
     void push(StepPairs& pairs, const ResponseStep& step, int pair, const PairGeometry& g, double overlap) const {
-        const ContactPair& p = pairs.pair(pair);
+        const ContactPair p = pairs.pair(pair);
         Vec3 rate = Vec3::Zero();
         for (int k = 0; k < 4; ++k)
             rate += g.weight[k] * (pairs.is_node(p.p[k]) ? step.start_velocity[p.p[k]] : pairs.velocity(p.p[k]));

@@ -72,7 +72,7 @@ void resolve_by_zones(StepPairs& pairs, const ResponseStep& step, Points& v, int
         }
         for (const Impact& impact : impacts) {
             int first = -1;
-            const auto& points = pairs.pair(impact.pair).p;
+            const auto points = pairs.pair(impact.pair).p;
             for (const int i : points) {
                 if (i >= n) continue;
                 in_zone[i] = 1;

@@ -56,7 +56,8 @@ struct Run {
 
     bool solve_directly(const BlockMatrix& h, const VectorXd& g, VectorXd& dx) {
         ++result.factorisations;
-        if (!factor.factorise(h)) return false;
+        factored = factor.factorise(h);
+        if (!factored) return false;
         factor.solve(-g, dx);
         return true;
     }

@@ -116,7 +116,7 @@ TEST_CASE("contact: a list that is kept up finds the pairs of a new one") {
     const auto touching = [](const Contact& contact, const Points& at) {
         std::set<std::array<int, 6>> pairs;
         for (const ActivePair& a : contact.active(at)) {
-            const ContactPair& p = contact.pair(a.pair);
+            const ContactPair p = contact.pair(a.pair);
             pairs.insert({p.p[0], p.p[1], p.p[2], p.p[3], p.edge_edge, p.with_body});
         }
         CHECK(pairs.size() == contact.active(at).size()); // none twice

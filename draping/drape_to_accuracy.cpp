@@ -6,6 +6,7 @@
 #include "draping/contact/self_touch.h"
 #include "draping/grade.h"
 #include "draping/joined.h"
+#include "draping/measure.h"
 #include "draping/strain_difference.h"
 #include "geometry/text.h"
 
@@ -27,7 +28,11 @@ constexpr double curved_most = 0.3;        // of the area: with a tenth, errors 
 constexpr double aim = 0.7;                // of what is asked: estimates are off by about as much
 constexpr double share_of_residual = 0.1;  // of the error asked for, that iterations may leave
 constexpr double travel = 2;               // of the error asked for: by which cloth may go on from one mesh to the next
+constexpr double share_of_model = 0.1;     // of the error asked for, that a lighter method may make
 constexpr double left_over_step = 10;      // what was left to rest over the last step at a residual below 1: 2 to 10 were seen
+
+/// The decision to model less from some mesh on; nothing: not made.
+using Choice = std::optional<std::size_t>;
 
 /// What the loop over meshes has come to.
 struct AccuracyRun {
@@ -38,9 +43,10 @@ struct AccuracyRun {
     const DrapeOptions& options;
     Clock::time_point started = Clock::now();
     DrapeResult result = {};
+    Staging staging = {}; ///< of the last mesh
     AccuracyReport report = {};
     std::size_t edge_decision = 0; ///< the last about an edge length
-    std::optional<std::size_t> self_decision = {}; ///< that contact of the cloth with itself is left out
+    Choice no_self_contact = {}, no_friction = {}, lighter = {};
     bool out_of_time = false;      ///< the budget did not suffice for the last mesh, which was taken back
 
     bool of_strain() const { return accuracy.of == AccuracyOf::strain; }
@@ -54,8 +60,15 @@ struct AccuracyRun {
     void decide(std::string what, std::string measure, double value) {
         report.decisions.push_back({std::move(what), std::move(measure), value, false});
     }
-    /// Whether contact of the cloth with itself is left out.
-    bool alone() const { return self_decision && !report.decisions[*self_decision].taken_back; }
+    bool stands(const Choice& choice) const { return choice && !report.decisions[*choice].taken_back; }
+    void choose(Choice& choice, std::string what, std::string measure, double value) {
+        choice = report.decisions.size();
+        decide(std::move(what), std::move(measure), value);
+    }
+    void take_back(const Choice& choice, std::string what, std::string measure, double value) {
+        report.decisions[*choice].taken_back = true;
+        decide(std::move(what), std::move(measure), value);
+    }
     int meshes() const { return int(report.meshes.size()); }
     const AccuracyMesh& mesh(int from_last) const { return report.meshes[report.meshes.size() - 1 - from_last]; }
 };
@@ -109,18 +122,21 @@ double reach(const AccuracyRun& run) { return run.options.clearance + travel * (
 
 /// Leaves contact of the cloth with itself out of the next mesh where the last shows that there will be none.
 void decide_self_contact(AccuracyRun& run) {
-    if (!run.accuracy.leaves_out_self_contact || !run.options.self_contact || run.self_decision) return;
+    if (!run.accuracy.leaves_out_self_contact || !run.options.self_contact || run.no_self_contact) return;
     const Garment& g = run.result.garment;
     if (!g.stitches.empty() || may_touch_itself(node_triangles(g), run.result.state.positions, reach(run))) return;
-    run.self_decision = run.report.decisions.size();
-    run.decide(text("contact of the cloth with itself is left out of meshes after that of %.3g mm, since cones of its normals and boxes show "
+    run.choose(run.no_self_contact,
+               text("contact of the cloth with itself is left out of meshes after that of %.3g mm, since cones of its normals and boxes show "
                     "that it cannot touch itself", 1e3 * run.mesh(0).edge_length),
                "distance by which what is not next to each other stays apart at least, m", reach(run));
 }
 
-/// Whether cloth without contact with itself came to touch itself after all.
-bool touched_itself(const DrapeResult& now, double clearance) {
-    return now.status != DrapeStatus::limit && may_touch_itself(node_triangles(now.garment), now.state.positions, clearance);
+/// Leaves friction out of the next mesh where the last shows that there will be nothing to rub against.
+void decide_friction(AccuracyRun& run) {
+    if (!run.accuracy.leaves_out_friction || run.no_friction || (run.options.self_contact && !run.stands(run.no_self_contact))) return;
+    if (!(clearance_min(node_triangles(run.result.garment), run.result.state.positions, run.avatar.body) > reach(run))) return;
+    run.choose(run.no_friction, text("friction is left out of meshes after that of %.3g mm, since the cloth touches nothing", 1e3 * run.mesh(0).edge_length),
+               "distance by which it stays apart from the body at least, m", reach(run));
 }
 
 /// Of a drape on the next mesh from that on the last.
@@ -129,30 +145,78 @@ double difference(const AccuracyRun& run, const DrapeResult& now) {
     return strain_difference(run.result.garment, run.result.state.positions, now.garment, now.state.positions);
 }
 
+bool within_limits(const DrapeResult& r, const PanelFabrics& fabrics) {
+    const StrainMeasure s = measure_strain(r.garment, r.state.positions, fabrics);
+    const auto within = [](double most, double limit) { return limit <= 0 || most <= limit; };
+    return within(s.warp.max, s.limit_warp) && within(s.weft.max, s.limit_weft) &&
+           within(std::max(std::abs(s.shear.min), std::abs(s.shear.max)), s.limit_shear);
+}
+
+/// What a drape on this edge length is done with, by the choices that stand.
+DrapeOptions chosen(const AccuracyRun& run, double edge_length) {
+    DrapeOptions o = run.options;
+    if (run.accuracy.ends_early) o.still = share_of_residual / left_over_step * run.goal_of_place(edge_length);
+    if (run.stands(run.no_self_contact)) o.self_contact = false;
+    if (run.stands(run.no_friction)) o.friction = o.cloth_friction = 0;
+    if (run.stands(run.lighter)) o.method = Method::projective;
+    o.max_seconds = std::min(run.options.max_seconds - run.seconds(), run.seconds_left());
+    return o;
+}
+
+/// Settles the next meshes of cloth that touches nothing by a lighter method where the last mesh goes nowhere by it.
+void decide_method(AccuracyRun& run) {
+    if (!run.accuracy.lighter_method || run.lighter || !run.stands(run.no_friction) || run.options.method != Method::equilibrium) return;
+    DrapeOptions o = chosen(run, run.mesh(0).edge_length);
+    o.method = Method::projective;
+    o.from = run.result.state.positions;
+    o.progress = part_of_meshes(run);
+    const DrapeResult lighter = drape(run.staging, run.avatar, run.fabrics, o);
+    if (lighter.status != DrapeStatus::converged || !within_limits(lighter, run.fabrics)) return;
+    const double off = difference(run, lighter);
+    if (off > share_of_model * run.goal()) return;
+    run.choose(run.lighter, text("meshes after that of %.3g mm are settled by %s, which is faster and makes that mesh the same", 1e3 * run.mesh(0).edge_length,
+                                 to_string(o.method)),
+               text("difference of both methods there, ") + (run.of_strain() ? "of strain" : "m"), off);
+}
+
+/// Takes back what this mesh shows to be wrong; whether it has to be draped again.
+bool take_back(AccuracyRun& run, const DrapeResult& now, double edge_length) {
+    if (now.status == DrapeStatus::limit) return false;
+    const double clearance = run.options.clearance;
+    const std::string from = text(" from the mesh of %.3g mm on, since ", 1e3 * edge_length);
+    const std::vector<Triangle> cloth = node_triangles(now.garment);
+    const bool near_itself = run.stands(run.no_self_contact) && may_touch_itself(cloth, now.state.positions, clearance);
+    const bool near = run.stands(run.no_friction) && (near_itself || clearance_min(cloth, now.state.positions, run.avatar.body) <= clearance);
+    const bool wrong = run.stands(run.lighter) && (now.status != DrapeStatus::converged || !within_limits(now, run.fabrics));
+    if (near_itself)
+        run.take_back(run.no_self_contact, "contact of the cloth with itself is modelled" + from + "it came near itself", "clearance, m", clearance);
+    if (near) run.take_back(run.no_friction, "friction is modelled" + from + "the cloth came to touch something", "clearance, m", clearance);
+    if (wrong)
+        run.take_back(run.lighter, text("%s settles", to_string(Method::equilibrium)) + from + "the lighter method did not keep the fabric's limits", "residual",
+                      std::isfinite(now.residual) ? now.residual : 0);
+    return near_itself || near || wrong;
+}
+
 /// Drapes at this edge length from where the mesh before came to rest.
 void drape_mesh(AccuracyRun& run, double edge_length) {
     const auto start = AccuracyRun::Clock::now();
-    const Staging staging = mesh_for(run, edge_length);
-    DrapeOptions o = run.options;
-    if (run.accuracy.ends_early) o.still = share_of_residual / left_over_step * run.goal_of_place(edge_length);
-    o.progress = part_of_meshes(run);
+    Staging staging = mesh_for(run, edge_length);
+    Points from;
     const bool goes_on = at_rest(run);
     if (goes_on) {
-        o.from = carried(run, staging);
+        from = carried(run, staging);
         decide_self_contact(run);
+        decide_friction(run);
+        decide_method(run);
     }
     const auto drape_once = [&] {
-        o.self_contact = run.options.self_contact && !run.alone();
-        o.max_seconds = std::min(run.options.max_seconds - run.seconds(), run.seconds_left());
+        DrapeOptions o = chosen(run, edge_length);
+        o.from = from;
+        o.progress = part_of_meshes(run);
         return drape(staging, run.avatar, run.fabrics, o);
     };
     DrapeResult now = drape_once();
-    if (run.alone() && touched_itself(now, o.clearance)) {
-        run.report.decisions[*run.self_decision].taken_back = true;
-        run.decide(text("contact of the cloth with itself is modelled from the mesh of %.3g mm on, since it came near itself", 1e3 * edge_length),
-                   "clearance, m", o.clearance);
-        now = drape_once();
-    }
+    while (take_back(run, now, edge_length)) now = drape_once();
     if (goes_on && now.status == DrapeStatus::limit && run.seconds_left() <= 0) {
         run.report.decisions[run.edge_decision].taken_back = true;
         run.decide(text("the drape is that of the mesh of %.3g mm, since one of %.3g mm did not come to rest in the budget",
@@ -171,6 +235,7 @@ void drape_mesh(AccuracyRun& run, double edge_length) {
     if (goes_on) mesh.difference = difference(run, now);
     run.result = run.meshes() > 0 ? joined(std::move(run.result), std::move(now)) : std::move(now);
     run.report.meshes.push_back(mesh);
+    run.staging = std::move(staging);
 }
 
 /// From the differences of the last meshes.

@@ -19,6 +19,8 @@ struct AccuracyOptions {
     double finest = 2e-3;  ///< m, no mesh is finer
     bool ends_early = true; ///< iterations end when they move the cloth by little of what is asked
     bool leaves_out_self_contact = true; ///< where cones of normals and boxes show that the cloth cannot touch itself
+    bool leaves_out_friction = true; ///< where it touches nothing at all
+    bool lighter_method = true; ///< Method::projective for cloth that touches nothing, where it makes the last mesh the same
     bool graded = true;    ///< meshes are as fine as their edge length where the cloth is curved, and coarser elsewhere
     /// The pattern at an edge length, m, and a factor in (0, 1] on it by place (empty: 1), at nested levels.
     std::function<Staging(double edge_length, const PlaceFactor& size)> mesh;

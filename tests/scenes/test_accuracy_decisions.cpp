@@ -8,11 +8,13 @@
 #include "sewing/avatar.h"
 #include "sewing/form.h"
 #include "src/drape_input.h"
+#include "tests/support/temp_folder.h"
 #include "tests/support/test_data.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <fstream>
 #include <numeric>
 
 using namespace toile;
@@ -42,12 +44,29 @@ struct Dressed {
 
 Dressed tee() { return {TOILE_SOURCE_DIR "/examples/tee.json", "", make_form({})}; }
 
-const AccuracyDecision* about_itself(const AccuracyReport& r) {
-    const auto found = std::find_if(r.decisions.begin(), r.decisions.end(), [](const AccuracyDecision& d) {
-        return d.what.find("contact of the cloth with itself is left out") == 0;
-    });
+/// A cloth of 60 by 40 cm over a body, held by its four corners.
+Dressed awning(const std::string& fabric, TriMesh body) {
+    const test::TempFolder folder;
+    std::ofstream(folder / "awning.json") << R"({"pattern": {"panels": {"sheet": {"translation": [-30, 250, -20], "rotation": [90, 0, 0],
+        "vertices": [[0, 0], [0, 40], [60, 40], [60, 0]],
+        "edges": [{"endpoints": [0, 1]}, {"endpoints": [1, 2]}, {"endpoints": [2, 3]}, {"endpoints": [3, 0]}]}},
+        "stitches": [], "panel_order": ["sheet"]}, "properties": {"curvature_coords": "relative", "normalize_panel_translation": false,
+        "units_in_meter": 100, "normalized_edge_loops": true}})";
+    std::ofstream(folder / "awning.toile.json") << R"({"toile": 1, "pins": [{"panel": "sheet", "edge": 0, "from": 0, "to": 0.1},
+        {"panel": "sheet", "edge": 0, "from": 0.9, "to": 1}, {"panel": "sheet", "edge": 2, "from": 0, "to": 0.1},
+        {"panel": "sheet", "edge": 2, "from": 0.9, "to": 1}]})";
+    return {folder / "awning.json", fabric, std::move(body)};
+}
+
+const AccuracyDecision* about(const AccuracyReport& r, const std::string& what) {
+    const auto found = std::find_if(r.decisions.begin(), r.decisions.end(),
+                                    [&](const AccuracyDecision& d) { return d.what.find(what) != std::string::npos; });
     return found == r.decisions.end() ? nullptr : &*found;
 }
+
+const AccuracyDecision* about_itself(const AccuracyReport& r) { return about(r, "contact of the cloth with itself is left out"); }
+const AccuracyDecision* about_friction(const AccuracyReport& r) { return about(r, "friction is left out"); }
+const AccuracyDecision* about_method(const AccuracyReport& r) { return about(r, "are settled by projective"); }
 
 } // namespace
 
@@ -112,6 +131,82 @@ TEST_CASE("contact of the cloth with itself comes back into a drape to an accura
     o.leaves_out_self_contact = false;
     const DrapeResult other = skirt.drape(o);
     CHECK(chosen.state.positions == other.state.positions);
+}
+
+TEST_CASE("friction that is left out changes a drape to an accuracy by less than a tenth of what it was asked for") {
+    constexpr double asked = 2e-3;
+    const Dressed cloth = awning("jersey", make_form({}));
+    AccuracyOptions o = cloth.options(asked);
+    o.lighter_method = false;
+    const DrapeResult chosen = cloth.drape(o);
+    REQUIRE(chosen.status == DrapeStatus::converged);
+    REQUIRE(about_friction(*chosen.accuracy));
+    CHECK_FALSE(about_friction(*chosen.accuracy)->taken_back);
+    CHECK(chosen.friction.body == 0);
+    o.leaves_out_friction = false;
+    const DrapeResult other = cloth.drape(o);
+    CHECK_FALSE(about_friction(*other.accuracy));
+    CHECK(other.friction.body > 0);
+    CHECK(compare(surface(chosen), surface(other)).rms < 0.1 * asked);
+}
+
+TEST_CASE("friction comes back into a drape to an accuracy where cloth comes to touch something") {
+    const TriMesh form = make_form({});
+    Dressed cloth = awning("jersey", form);
+    AccuracyOptions o = cloth.options(1e-4);
+    o.finest = 0.04;
+    o.lighter_method = false;
+    const DrapeResult first = cloth.drape(o);
+    REQUIRE(first.status == DrapeStatus::converged);
+    // A form that the first mesh stays clear of, and a finer one does not.
+    o.finest = 0.01;
+    const DrapeResult finer = cloth.drape(o);
+    const auto gap = [&](const DrapeResult& r) { return clearance_min(node_triangles(r.garment), r.state.positions, cloth.body); };
+    INFO(gap(first) << " and " << gap(finer));
+    REQUIRE(gap(finer) < gap(first) - 3e-4);
+    const double up = gap(first) - cloth.how.clearance - 3e-4;
+    for (Vec3& p : cloth.body.points) p.y() += up;
+    const DrapeResult chosen = cloth.drape(o);
+    REQUIRE(chosen.status == DrapeStatus::converged);
+    REQUIRE(about_friction(*chosen.accuracy));
+    CHECK(about_friction(*chosen.accuracy)->taken_back);
+    CHECK(chosen.friction.body > 0);
+    CHECK(about(*chosen.accuracy, "friction is modelled from the mesh of"));
+}
+
+TEST_CASE("a lighter method changes a drape to an accuracy by less than half of what it was asked for") {
+    constexpr double asked = 5e-3;
+    const Dressed cloth = awning("poplin", make_form({}));
+    AccuracyOptions o = cloth.options(asked);
+    const DrapeResult chosen = cloth.drape(o);
+    REQUIRE(chosen.status == DrapeStatus::converged);
+    REQUIRE(about_method(*chosen.accuracy));
+    CHECK_FALSE(about_method(*chosen.accuracy)->taken_back);
+    CHECK(chosen.method == Method::projective);
+    o.lighter_method = false;
+    const DrapeResult other = cloth.drape(o);
+    CHECK(other.method == Method::equilibrium);
+    CHECK(compare(surface(chosen), surface(other)).rms < 0.5 * asked);
+}
+
+TEST_CASE("a lighter method that stretches cloth beyond its limits is taken back") {
+    Dressed cloth = awning("poplin", make_form({}));
+    AccuracyOptions o = cloth.options(5e-3);
+    const auto most = [&](const DrapeResult& r) { return measure_strain(r.garment, r.state.positions, cloth.input.fabrics).warp.max; };
+    const DrapeResult light = cloth.drape(o);
+    REQUIRE(light.method == Method::projective);
+    o.finest = 0.04;
+    const DrapeResult coarse = cloth.drape(o);
+    INFO(most(coarse) << " and " << most(light));
+    REQUIRE(most(light) > 1.1 * most(coarse)); // finer triangles show the corners better
+    for (Fabric& f : cloth.input.fabrics) f.limit_warp = (most(light) + most(coarse)) / 2;
+    o.finest = 2e-3;
+    const DrapeResult chosen = cloth.drape(o);
+    REQUIRE(chosen.status == DrapeStatus::converged);
+    REQUIRE(about_method(*chosen.accuracy));
+    CHECK(about_method(*chosen.accuracy)->taken_back);
+    CHECK(chosen.method == Method::equilibrium);
+    CHECK(most(chosen) <= cloth.input.fabrics[0].limit_warp);
 }
 
 TEST_CASE("a drape to an accuracy of strain comes as near as asked") {

@@ -53,6 +53,7 @@ struct DrapeRun {
     std::vector<std::string> held = {}, carried = {}; ///< labels of hooks that stay, and of those that are let go
     std::map<std::string, double> carried_at = {}; ///< mean height of each of these where the file puts it
     bool open = false;         ///< a seam could not be closed
+    bool loose = false;        ///< the coarsest level started out hardly strained
     DrapeFacts facts = {};
 
     static double seconds_since(Clock::time_point start) {

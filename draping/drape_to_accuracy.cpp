@@ -174,7 +174,7 @@ void decide_method(AccuracyRun& run) {
     if (lighter.status != DrapeStatus::converged || !within_limits(lighter, run.fabrics)) return;
     const double off = difference(run, lighter);
     if (off > share_of_model * run.goal()) return;
-    run.choose(run.lighter, text("meshes after that of %.3g mm are settled by %s, which is faster and makes that mesh the same", 1e3 * run.mesh(0).edge_length,
+    run.choose(run.lighter, text("meshes after that of %.3g mm are settled by %s, which asks less of every triangle and makes that mesh the same", 1e3 * run.mesh(0).edge_length,
                                  to_string(o.method)),
                text("difference of both methods there, ") + (run.of_strain() ? "of strain" : "m"), off);
 }

@@ -24,7 +24,9 @@ constexpr int harder_iterations = 200;         // so many, limits are not harden
 constexpr double least_tighter = 2.5e-4;       // drawn in by such shares of theirs
 constexpr double most_tighter = 2e-3;
 constexpr double inner_stitch_stiffness = 1e5; // N/m, of stitches to the inside of an edge of closed seams
-constexpr double coarse_residual = 10;         // to which levels that are not the last are settled
+constexpr double coarse_residual = 10;         // to which levels that are not the last are settled,
+constexpr double loose_residual = 0.1;         // and cloth that starts out loose, where its weight, which nothing bears yet, makes 1
+constexpr double loose_strain = 1e-3;
 constexpr double still_residual = 1;           // to which the last is where DrapeOptions::still is enough
 constexpr int untangle_every = 20;             // iterations after which cloth that did not come apart is tried again,
 constexpr int most_untangles = 5;              // in each pass
@@ -67,6 +69,12 @@ bool carried_by_fit(const DrapeRun& run) {
     } catch (const std::invalid_argument&) { // no figure
         return false;
     }
+}
+
+/// Whether the cloth starts out hardly strained by sewing: it has all of its way before it, though it lacks little force.
+bool starts_loose(const DrapeRun& run) {
+    const StrainMeasure s = measure_strain(run.garment, run.x, run.fabrics);
+    return std::max({s.warp.max, -s.warp.min, s.weft.max, -s.weft.min, s.shear.max, -s.shear.min}) < loose_strain;
 }
 
 /// Tells when cloth has fallen off, or when cloth that is too short round the body, or that the body could not grow
@@ -220,8 +228,9 @@ void settle_level(DrapeRun& run) {
     std::vector<Pass> passes{{1.0 / 4, 8, false}, {1, most_iterations, false}};
     if (first)
         passes = {{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, run.last_level() ? most_iterations : 150, false}};
+    if (first) run.loose = !motion && !own_points && acting.hooks.empty() && starts_loose(run);
     if (!sheet) passes.erase(passes.begin(), passes.end() - (first ? 2 : 1)); // nothing to soften
-    if (run.facts.restarted) passes = {{1, most_iterations, false}};
+    if (run.facts.restarted || run.loose) passes = {{1, most_iterations, false}};
     // Cloth that keeps its lengths finds the place where it fits before friction may hold it: a band on a slight cone would
     // be held at any height, by ever larger tensions.
     if (own_points && !run.facts.restarted) {
@@ -252,7 +261,7 @@ void settle_level(DrapeRun& run) {
             problem.rest_here(run.x, run.result.friction);
         }
         SettleOptions o;
-        o.tolerance = run.last_level() && last_pass ? run.options.tolerance : coarse_residual;
+        o.tolerance = run.last_level() && last_pass ? run.options.tolerance : run.loose ? loose_residual : coarse_residual;
         if (run.last_level() && last_pass) {
             o.still = run.options.still;
             o.still_below = still_residual;

@@ -117,8 +117,8 @@ void sew_coarsest(DrapeRun& run) {
         if (!closes(hung, {.waiting = waiting}) && (sewn.open || !comes_apart(run, sewn))) {
             const Sewn quick = sewn;
             closes(hung, {.waiting = waiting, .careful = true});
-            // What little holds may slide down while it is sewn for long.
-            if (sewn.way.careful && !quick.open && mean_height(sewn.x) < mean_height(quick.x) - slipped) sewn = quick;
+            // What little holds may slide down while it is sewn for long; of what is held the rings alone hang lower.
+            if (sewn.way.careful && !quick.open && top_height(sewn.x) < top_height(quick.x) - slipped) sewn = quick;
         }
     }
     run.x = merge(run.garment, run.joined, sewn.x);

@@ -428,8 +428,10 @@ const std::vector<ActivePair>& Contact::active(const Points& x) const {
         for (int c = begin; c < end; ++c)
             for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
                 const ListedPair& l = pairs_[i];
-                if (l.built - moved(distance, l, points(l)) >= reach(kind_of(l))) continue;
+                const double nearest = l.built - moved(distance, l, points(l));
+                if (nearest >= reach(kind_of(l))) continue;
                 const ContactPair p = pair(l);
+                if (nearest >= p.distance) continue;
                 const auto corner = corners(x, p);
                 ActivePair a{i, pair_geometry(corner, p.edge_edge), {}};
                 if (a.geometry.d >= p.distance) continue;

@@ -4,6 +4,7 @@
 #include "draping/carry_drape.h"
 #include "draping/compare.h"
 #include "draping/contact/self_touch.h"
+#include "draping/energy/strain_limit.h"
 #include "draping/grade.h"
 #include "draping/joined.h"
 #include "draping/measure.h"
@@ -146,10 +147,7 @@ double difference(const AccuracyRun& run, const DrapeResult& now) {
 }
 
 bool within_limits(const DrapeResult& r, const PanelFabrics& fabrics) {
-    const StrainMeasure s = measure_strain(r.garment, r.state.positions, fabrics);
-    const auto within = [](double most, double limit) { return limit <= 0 || most <= limit; };
-    return within(s.warp.max, s.limit_warp) && within(s.weft.max, s.limit_weft) &&
-           within(std::max(std::abs(s.shear.min), std::abs(s.shear.max)), s.limit_shear);
+    return beyond_strain_limits(make_strain_limits(r.garment, fabrics), r.state.positions).empty();
 }
 
 /// What a drape on this edge length is done with, by the choices that stand.

@@ -37,6 +37,29 @@ ListedPair::Kind kind_of(const ListedPair& p) { return ListedPair::Kind(p.kind);
 bool of_edges(ListedPair::Kind kind) { return kind == ListedPair::edge_edge || kind == ListedPair::edge_body_edge; }
 bool with_body(ListedPair::Kind kind) { return kind != ListedPair::node_triangle && kind != ListedPair::edge_edge; }
 
+float rounded_down(double d) { return std::nextafter(float(d), -1.0f); }
+float rounded_up(double d) { return std::nextafter(float(d), 1.0f); }
+
+/// How much nearer the two of a pair can have come by their travel.
+double moved(const Travel& t, const ListedPair& l) {
+    const auto of_body = [](const std::vector<double>& v, unsigned i) { return v.empty() ? 0 : v[i]; };
+    switch (l.kind) {
+    case ListedPair::node_triangle: return t.node[l.first] + t.triangle[l.second];
+    case ListedPair::node_body_triangle: return t.node[l.first] + of_body(t.body_triangle, l.second);
+    case ListedPair::body_point_triangle: return of_body(t.body_point, l.first) + t.triangle[l.second];
+    case ListedPair::edge_edge: return t.edge[l.first] + t.edge[l.second];
+    default: return t.edge[l.first] + of_body(t.body_edge, l.second);
+    }
+}
+
+template <std::size_t N>
+std::vector<double> most_of_each(const std::vector<std::array<int, N>>& simplices, const double* distance) {
+    std::vector<double> most(simplices.size());
+    for (std::size_t k = 0; k < simplices.size(); ++k)
+        for (const int i : simplices[k]) most[k] = std::max(most[k], distance[i]);
+    return most;
+}
+
 Box ball_box(const Vec3& p, double r) { return Box(p.array() - r, p.array() + r); }
 
 template <std::size_t N> Box simplex_box(const Points& x, const std::array<int, N>& s, const std::vector<double>& slack) {
@@ -220,10 +243,7 @@ ContactPair Contact::pair(const ListedPair& l) const {
     p.p = points(l);
     p.edge_edge = of_edges(kind);
     p.with_body = with_body(kind);
-    p.distance = reach(kind);
-    p.built = l.built;
-    if (l.near_in_cloth)
-        for (int k : p.p) p.distance = std::min(p.distance, 0.5 * cloth_.node_reach[k]);
+    p.distance = l.near_in_cloth ? limited_distance(p.p) : reach(kind);
     if (!p.edge_edge) {
         p.weight = kind == ListedPair::body_point_triangle ? body_area_[l.first] : cloth_.node_area[l.first];
         return p;
@@ -249,18 +269,42 @@ bool Contact::near_in_cloth(bool edge_edge, const std::array<int, 4>& points) co
     return false;
 }
 
-std::vector<double> Contact::moved_since_built(const Points& x) const {
+/// Of a pair too near each other on the cloth for the barrier's full distance.
+double Contact::limited_distance(const std::array<int, 4>& points) const {
+    double distance = options_.cloth.distance;
+    for (const int k : points) distance = std::min(distance, 0.5 * cloth_.node_reach[k]);
+    return distance;
+}
+
+/// From those of the nodes, which those of the body's points follow when it moves.
+Travel Contact::travel(std::vector<double> distance) const {
+    Travel t;
+    if (int(distance.size()) > nodes_) {
+        t.body_point.assign(distance.begin() + nodes_, distance.end());
+        t.body_edge = most_of_each(body_edges_, t.body_point.data());
+        t.body_triangle = most_of_each(body_triangles_, t.body_point.data());
+        distance.resize(nodes_);
+    }
+    t.edge = most_of_each(cloth_.edges, distance.data());
+    t.triangle = most_of_each(cloth_.triangles, distance.data());
+    t.node = std::move(distance);
+    return t;
+}
+
+Travel Contact::travel_since_built(const Points& x) const {
     std::vector<double> d(nodes_ + (body_moved_ ? body_.size() : 0));
     for (int i = 0; i < nodes_; ++i) d[i] = (x[i] - built_at_[i]).norm();
     if (body_moved_)
         for (std::size_t v = 0; v < body_.size(); ++v) d[nodes_ + v] = (body_[v] - body_built_at_[v]).norm();
-    return d;
+    return travel(std::move(d));
 }
 
-double Contact::moved(const std::vector<double>& d, const ListedPair& l, const std::array<int, 4>& p) const {
-    const auto of = [&d](int i) { return i < int(d.size()) ? d[i] : 0; }; // a body at rest has no places in the list
-    if (of_edges(kind_of(l))) return std::max(of(p[0]), of(p[1])) + std::max(of(p[2]), of(p[3]));
-    return of(p[0]) + std::max({of(p[1]), of(p[2]), of(p[3])});
+Travel Contact::travel_of(const Eigen::VectorXd& dx, const Points* body_dx) const {
+    std::vector<double> step(nodes_ + (body_dx ? body_.size() : 0));
+    for (int i = 0; i < nodes_; ++i) step[i] = dx.segment<3>(3 * i).norm();
+    if (body_dx)
+        for (std::size_t v = 0; v < body_.size(); ++v) step[nodes_ + v] = (*body_dx)[v].norm();
+    return travel(std::move(step));
 }
 
 bool Contact::body_serves(const Points* body_dx) const {
@@ -331,6 +375,7 @@ void Contact::find_pairs(const std::vector<char>& moved_node) {
 
     std::vector<double> slack = slack_;
     slack.insert(slack.end(), body_slack_.begin(), body_slack_.end());
+    const Travel room = travel(std::move(slack));
     const auto has_moved = [&](const auto& simplex) {
         return std::any_of(simplex.begin(), simplex.end(), [&](int i) { return i < nodes_ && moved_node[i]; });
     };
@@ -347,7 +392,7 @@ void Contact::find_pairs(const std::vector<char>& moved_node) {
             for (int c = begin; c < end; ++c)
                 for (int q = c * query_chunk; q < std::min(queries, (c + 1) * query_chunk); ++q)
                     find(q, [&](ListedPair::Kind kind, int first, int second) {
-                        ListedPair l{kind, 0, unsigned(first), unsigned(second)};
+                        ListedPair l{kind, 0, unsigned(first), unsigned(second), 0, 0};
                         const std::array<int, 4> p = points(l);
                         const bool body = with_body(kind), edge_edge = of_edges(kind);
                         const auto out = [&](int i) { return !left_out_.empty() && left_out_[i]; };
@@ -355,11 +400,13 @@ void Contact::find_pairs(const std::vector<char>& moved_node) {
                         const auto still = [&](int i) { return i >= nodes_ || cloth_.still[i]; };
                         if (!cloth_.still.empty() && std::all_of(p.begin(), p.end(), still)) return;
                         const std::array<Vec3, 4> corner{at(x, p[0]), at(x, p[1]), at(x, p[2]), at(x, p[3])};
-                        const double reach = this->reach(kind) + moved(slack, l, p);
+                        const double reach = this->reach(kind) + moved(room, l);
                         if (planes_apart(corner, edge_edge, reach)) return;
-                        l.built = pair_geometry(corner, edge_edge).d;
-                        if (l.built > reach) return;
+                        const double d = pair_geometry(corner, edge_edge).d;
+                        if (d > reach) return;
                         l.near_in_cloth = !body && near_in_cloth(edge_edge, p);
+                        l.built = rounded_down(d);
+                        l.distance = rounded_up(l.near_in_cloth ? limited_distance(p) : this->reach(kind));
                         found[c].push_back(l);
                     });
         });
@@ -421,17 +468,15 @@ void Contact::find_pairs(const std::vector<char>& moved_node) {
 const std::vector<ActivePair>& Contact::active(const Points& x) const {
     if (x == active_at_) return active_;
     const Stopwatch::Lap lap(clock_);
-    const std::vector<double> distance = moved_since_built(x);
+    const Travel travel = travel_since_built(x);
     const int n = int(pairs_.size()), chunk = 1024, chunks = (n + chunk - 1) / chunk;
     std::vector<std::vector<ActivePair>> found(chunks);
     parallel_for(chunks, 1, [&](int begin, int end) {
         for (int c = begin; c < end; ++c)
             for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
                 const ListedPair& l = pairs_[i];
-                const double nearest = l.built - moved(distance, l, points(l));
-                if (nearest >= reach(kind_of(l))) continue;
+                if (l.built - moved(travel, l) >= l.distance) continue;
                 const ContactPair p = pair(l);
-                if (nearest >= p.distance) continue;
                 const auto corner = corners(x, p);
                 ActivePair a{i, pair_geometry(corner, p.edge_edge), {}};
                 if (a.geometry.d >= p.distance) continue;
@@ -512,26 +557,16 @@ void Contact::couplings(const std::vector<ActivePair>& active, std::vector<std::
     for (const ActivePair& a : active)
         if (!with_body(kind_of(pairs_[a.pair]))) couple(pairs_[a.pair]);
     for (const ListedPair& l : pairs_)
-        if (!with_body(kind_of(l)) && l.built < 2 * reach(kind_of(l)) && l.built < 2 * pair(l).distance) couple(l);
-}
-
-std::vector<double> Contact::lengths(const Eigen::VectorXd& dx, const Points* body_dx) const {
-    std::vector<double> step(nodes_ + (body_dx ? body_.size() : 0));
-    for (int i = 0; i < nodes_; ++i) step[i] = dx.segment<3>(3 * i).norm();
-    if (body_dx)
-        for (std::size_t v = 0; v < body_.size(); ++v) step[nodes_ + v] = (*body_dx)[v].norm();
-    return step;
+        if (!with_body(kind_of(l)) && l.built < 2 * l.distance) couple(l);
 }
 
 std::vector<int> Contact::within_reach(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx) const {
     const Stopwatch::Lap lap(clock_);
-    const std::vector<double> distance = moved_since_built(x), step = lengths(dx, body_dx);
+    const Travel before = travel_since_built(x), step = travel_of(dx, body_dx);
     std::vector<int> found;
     for (int i = 0; i < int(pairs_.size()); ++i) {
         const ListedPair& l = pairs_[i];
-        const std::array<int, 4> p = points(l);
-        const double nearest = l.built - moved(distance, l, p) - moved(step, l, p);
-        if (nearest < reach(kind_of(l)) && nearest < pair(l).distance) found.push_back(i);
+        if (l.built - moved(before, l) - moved(step, l) < l.distance) found.push_back(i);
     }
     return found;
 }
@@ -539,7 +574,7 @@ std::vector<int> Contact::within_reach(const Points& x, const Eigen::VectorXd& d
 double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx, int* blocking,
                               std::vector<double>* shares) const {
     const Stopwatch::Lap lap(clock_);
-    const std::vector<double> distance = moved_since_built(x), step = lengths(dx, body_dx);
+    const Travel before = travel_since_built(x), step = travel_of(dx, body_dx);
     const auto motion_of = [&](int i) -> Vec3 {
         if (i < nodes_) return dx.segment<3>(3 * i);
         return body_dx ? (*body_dx)[i - nodes_] : Vec3::Zero();
@@ -552,25 +587,21 @@ double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const 
         for (int c = begin; c < end; ++c)
             for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
                 const ListedPair& l = pairs_[i];
-                const std::array<int, 4> points = this->points(l);
-                const double room = l.built - moved(distance, l, points) - moved(step, l, points);
-                if (room > reach(kind_of(l))) continue;
+                if (l.built - moved(before, l) - moved(step, l) > l.distance) continue;
                 const ContactPair p = pair(l);
-                const Barrier b = barrier(p);
-                if (room > b.distance) continue;
                 Motion m;
                 m.x = corners(x, p);
                 for (int k = 0; k < 4; ++k) m.dx[k] = motion_of(p.p[k]);
                 ToiOptions options;
                 options.keep = keep_of_gap;
-                options.min_distance = b.floor;
+                options.min_distance = barrier(p).floor;
                 const double t = p.edge_edge ? time_of_impact_edge_edge(m, options)
                                              : time_of_impact_point_triangle(m, options);
                 if (t < 1) limits[c].emplace_back(t, i);
             }
     });
     Limit least{1.0, -1};
-    if (shares) shares->assign(body_dx ? step.size() : nodes_, 1.0);
+    if (shares) shares->assign(nodes_ + (body_dx ? body_.size() : 0), 1.0);
     for (const auto& found : limits)
         for (const auto& [t, i] : found) {
             if (t < least.first) least = {t, i};
@@ -637,8 +668,11 @@ std::vector<ContactPair> Contact::violations(const Points& x) {
     built_ = false;
     prepare(x, Eigen::VectorXd::Zero(3 * nodes_));
     std::vector<ContactPair> violated;
-    for (const ListedPair& l : pairs_)
-        if (const ContactPair p = pair(l); p.built <= barrier(p).floor) violated.push_back(p);
+    for (const ListedPair& l : pairs_) {
+        if (l.built > l.distance) continue;
+        const ContactPair p = pair(l);
+        if (pair_geometry(corners(x, p), p.edge_edge).d <= barrier(p).floor) violated.push_back(p);
+    }
     return violated;
 }
 

@@ -55,7 +55,6 @@ struct ContactPair {
     double distance = 0; ///< m, this pair's barrier acts below; at most the barrier's
     double weight = 0;   ///< m2
     double fade = 0;     ///< product of squared rest lengths, for edges
-    double built = 0;    ///< distance when the list was made
 };
 
 /// What the list keeps of a pair: in tight folds millions are within reach of a long step, and all but a few thousand of
@@ -66,7 +65,13 @@ struct ListedPair {
     unsigned near_in_cloth : 1; ///< too near each other on the cloth for the barrier's full distance
     unsigned first : 28;  ///< node, body point or edge
     unsigned second;      ///< triangle or edge
-    double built = 0;     ///< distance when the list was made
+    float built = 0;      ///< m, distance when the list was made, rounded down
+    float distance = 0;   ///< m, below which the barrier acts, rounded up
+};
+
+/// The farthest that any point of each node, edge and triangle goes, m; those of a body at rest are empty.
+struct Travel {
+    std::vector<double> node, edge, triangle, body_point, body_edge, body_triangle;
 };
 
 /// A pair within reach of its barrier at some state.
@@ -163,9 +168,10 @@ private:
     std::array<int, 4> points(const ListedPair& p) const;
     ContactPair pair(const ListedPair& p) const;
     void find_pairs(const std::vector<char>& moved);
-    double moved(const std::vector<double>& distance, const ListedPair& p, const std::array<int, 4>& points) const;
-    std::vector<double> lengths(const Eigen::VectorXd& dx, const Points* body_dx) const;
-    std::vector<double> moved_since_built(const Points& x) const;
+    double limited_distance(const std::array<int, 4>& points) const;
+    Travel travel(std::vector<double> distance) const;
+    Travel travel_of(const Eigen::VectorXd& dx, const Points* body_dx) const;
+    Travel travel_since_built(const Points& x) const;
     bool body_serves(const Points* body_dx) const;
     double slack_for(double step) const;
     bool near_in_cloth(bool edge_edge, const std::array<int, 4>& points) const;

@@ -25,20 +25,29 @@ constexpr double floor_share = 0.1;       // of the contact distance that is nev
 constexpr double barrier_stiffness = 1e7; // Pa/m for a cloth of 0.15 kg/m2 at a distance of half a millimetre
 constexpr double cloth_stiffness = 0.1;   // of the barrier, between cloth and cloth, which press lightly
 
-/// Whether the plane of the triangle, or the two parallel planes through the edges, show that a pair is farther apart
-/// than `reach`.
-bool planes_apart(const std::array<Vec3, 4>& x, bool edge_edge, double reach) {
+/// By how much the plane of the triangle, or the two parallel planes through the edges, show a pair to be apart.
+double apart_by_planes(const std::array<Vec3, 4>& x, bool edge_edge) {
     const Vec3 normal = edge_edge ? (x[1] - x[0]).cross(x[3] - x[2]) : (x[2] - x[1]).cross(x[3] - x[1]);
-    const double height = normal.dot(edge_edge ? x[2] - x[0] : x[1] - x[0]);
-    return height * height > 1.000001 * reach * reach * normal.squaredNorm();
+    const double height = normal.dot(edge_edge ? x[2] - x[0] : x[1] - x[0]), squared = normal.squaredNorm();
+    return squared > 0 ? 0.999999 * std::abs(height) / std::sqrt(squared) : 0;
+}
+
+/// The most that the two of a pair come nearer to each other in a motion.
+double approach(const std::array<Vec3, 4>& dx, bool edge_edge) {
+    const int split = edge_edge ? 2 : 1;
+    double squared = 0;
+    for (int a = 0; a < split; ++a)
+        for (int b = split; b < 4; ++b) squared = std::max(squared, (dx[a] - dx[b]).squaredNorm());
+    return 1.000001 * std::sqrt(squared);
 }
 
 ListedPair::Kind kind_of(const ListedPair& p) { return ListedPair::Kind(p.kind); }
 bool of_edges(ListedPair::Kind kind) { return kind == ListedPair::edge_edge || kind == ListedPair::edge_body_edge; }
 bool with_body(ListedPair::Kind kind) { return kind != ListedPair::node_triangle && kind != ListedPair::edge_edge; }
 
-float rounded_down(double d) { return std::nextafter(float(d), -1.0f); }
-float rounded_up(double d) { return std::nextafter(float(d), 1.0f); }
+// Of lengths; those below 0 count as 0.
+float rounded_down(double d) { return float(std::max(d, 0.0)) * (1 - std::numeric_limits<float>::epsilon()); }
+float rounded_up(double d) { return float(d) * (1 + std::numeric_limits<float>::epsilon()); }
 
 /// How much nearer the two of a pair can have come by their travel.
 double moved(const Travel& t, const ListedPair& l) {
@@ -401,7 +410,7 @@ void Contact::find_pairs(const std::vector<char>& moved_node) {
                         if (!cloth_.still.empty() && std::all_of(p.begin(), p.end(), still)) return;
                         const std::array<Vec3, 4> corner{at(x, p[0]), at(x, p[1]), at(x, p[2]), at(x, p[3])};
                         const double reach = this->reach(kind) + moved(room, l);
-                        if (planes_apart(corner, edge_edge, reach)) return;
+                        if (apart_by_planes(corner, edge_edge) > reach) return;
                         const double d = pair_geometry(corner, edge_edge).d;
                         if (d > reach) return;
                         l.near_in_cloth = !body && near_in_cloth(edge_edge, p);
@@ -471,14 +480,22 @@ const std::vector<ActivePair>& Contact::active(const Points& x) const {
     const Travel travel = travel_since_built(x);
     const int n = int(pairs_.size()), chunk = 1024, chunks = (n + chunk - 1) / chunk;
     std::vector<std::vector<ActivePair>> found(chunks);
+    apart_.resize(n);
     parallel_for(chunks, 1, [&](int begin, int end) {
         for (int c = begin; c < end; ++c)
             for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
                 const ListedPair& l = pairs_[i];
-                if (l.built - moved(travel, l) >= l.distance) continue;
+                apart_[i] = rounded_down(l.built - moved(travel, l));
+                if (apart_[i] >= l.distance) continue;
+                const bool edge_edge = of_edges(kind_of(l));
+                const std::array<int, 4> k = points(l);
+                const std::array<Vec3, 4> corner{at(x, k[0]), at(x, k[1]), at(x, k[2]), at(x, k[3])};
+                apart_[i] = std::max(apart_[i], rounded_down(apart_by_planes(corner, edge_edge)));
+                if (apart_[i] >= l.distance) continue;
+                ActivePair a{i, pair_geometry(corner, edge_edge), {}};
+                apart_[i] = rounded_down(a.geometry.d);
+                if (a.geometry.d >= l.distance) continue;
                 const ContactPair p = pair(l);
-                const auto corner = corners(x, p);
-                ActivePair a{i, pair_geometry(corner, p.edge_edge), {}};
                 if (a.geometry.d >= p.distance) continue;
                 if (p.edge_edge) a.fade = parallel_fade(corner, p.fade);
                 found[c].push_back(a);
@@ -562,19 +579,19 @@ void Contact::couplings(const std::vector<ActivePair>& active, std::vector<std::
 
 std::vector<int> Contact::within_reach(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx) const {
     const Stopwatch::Lap lap(clock_);
-    const Travel before = travel_since_built(x), step = travel_of(dx, body_dx);
+    active(x); // works out how far apart they are
+    const Travel step = travel_of(dx, body_dx);
     std::vector<int> found;
-    for (int i = 0; i < int(pairs_.size()); ++i) {
-        const ListedPair& l = pairs_[i];
-        if (l.built - moved(before, l) - moved(step, l) < l.distance) found.push_back(i);
-    }
+    for (int i = 0; i < int(pairs_.size()); ++i)
+        if (apart_[i] - moved(step, pairs_[i]) < pairs_[i].distance) found.push_back(i);
     return found;
 }
 
 double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const Points* body_dx, int* blocking,
                               std::vector<double>* shares) const {
     const Stopwatch::Lap lap(clock_);
-    const Travel before = travel_since_built(x), step = travel_of(dx, body_dx);
+    active(x); // works out how far apart they are
+    const Travel step = travel_of(dx, body_dx);
     const auto motion_of = [&](int i) -> Vec3 {
         if (i < nodes_) return dx.segment<3>(3 * i);
         return body_dx ? (*body_dx)[i - nodes_] : Vec3::Zero();
@@ -587,15 +604,18 @@ double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const 
         for (int c = begin; c < end; ++c)
             for (int i = c * chunk; i < std::min(n, (c + 1) * chunk); ++i) {
                 const ListedPair& l = pairs_[i];
-                if (l.built - moved(before, l) - moved(step, l) > l.distance) continue;
-                const ContactPair p = pair(l);
+                if (apart_[i] - moved(step, l) > l.distance) continue;
+                const bool edge_edge = of_edges(kind_of(l));
+                const std::array<int, 4> points = this->points(l);
                 Motion m;
+                for (int k = 0; k < 4; ++k) m.dx[k] = motion_of(points[k]);
+                if (apart_[i] - approach(m.dx, edge_edge) > l.distance) continue;
+                const ContactPair p = pair(l);
                 m.x = corners(x, p);
-                for (int k = 0; k < 4; ++k) m.dx[k] = motion_of(p.p[k]);
                 ToiOptions options;
                 options.keep = keep_of_gap;
                 options.min_distance = barrier(p).floor;
-                const double t = p.edge_edge ? time_of_impact_edge_edge(m, options)
+                const double t = edge_edge ? time_of_impact_edge_edge(m, options)
                                              : time_of_impact_point_triangle(m, options);
                 if (t < 1) limits[c].emplace_back(t, i);
             }

@@ -194,6 +194,7 @@ private:
     bool built_ = false;
     std::vector<ListedPair> pairs_;
     mutable std::vector<ActivePair> active_; ///< at active_at_, while the list and the body are what they were
+    mutable std::vector<float> apart_;       ///< m, there: no pair of the list is nearer than that
     mutable Points active_at_;
     std::vector<int> triangle_of_node_; ///< one of each node's
     double most_slack_ = 0;             ///< m, beyond the step itself

@@ -36,7 +36,8 @@ constexpr int most_sliding = 40;               // with so many iterations each,
 constexpr double sliding_residual = 30;        // or to this residual,
 constexpr double slid_strain = 1e-3;           // until cloth fits by so much
 constexpr int tight_every = 100;               // iterations after which cloth is looked at that may be too small
-constexpr double too_tight = 0.01;             // m, missing round the garment, of which
+constexpr double too_tight = 0.01;             // m, missing round the garment,
+constexpr int long_tight = 500;                // and `tight` after so many iterations, of which
 constexpr double tight_gain = 0.1;             // this share has to have gone since, for it to go on
 constexpr double coarse_motion_residual = 0.3; // less than the 1 of free fall
 
@@ -90,7 +91,8 @@ struct TightWatch {
         if (iteration == 0 || !run.last_level()) return false;
         const double last = missing;
         missing = find_tightness(run.garment, run.x, run.fabrics).missing;
-        return !run.grown || (missing > too_tight && missing > (1 - tight_gain) * last);
+        const double much = iteration < long_tight ? too_tight : tight;
+        return !run.grown || (missing > much && missing > (1 - tight_gain) * last);
     }
 };
 

@@ -4,6 +4,7 @@
 #include "geometry/distance.h"
 #include "geometry/text.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include <algorithm>
@@ -65,7 +66,12 @@ int thread_through_cloth(const Garment& g, const Points& x, const Stitch& s) {
     return found;
 }
 
-/// A triangle's part of a horizontal section.
+struct Plane {
+    Vec3 point, normal;
+    double height(const Vec3& p) const { return normal.dot(p - point); }
+};
+
+/// A triangle's part of a section by a plane.
 struct Cut {
     double space = 0;   ///< m, length in space
     double allowed = 0; ///< m, what its flat length may be stretched to
@@ -79,7 +85,8 @@ double allowed_length(const Vec2& flat, const Fabric& f) {
     return length + (f.limit_weft * weft + f.limit_warp * warp) / length;
 }
 
-bool cut_triangle(const Garment& g, const Points& x, const PanelFabrics& fabrics, int t, double y, Cut& cut) {
+bool cut_triangle(const Garment& g, const Points& x, const PanelFabrics& fabrics, int t, const Plane& plane,
+                  Cut& cut) {
     const Triangle n = g.nodes(t);
     const Mat2& e = g.rest.edges[t];
     const Vec2 flat[3] = {Vec2::Zero(), e.col(0), e.col(1)};
@@ -88,7 +95,7 @@ bool cut_triangle(const Garment& g, const Points& x, const PanelFabrics& fabrics
     int ends = 0;
     for (int k = 0; k < 3; ++k) {
         const int l = (k + 1) % 3;
-        const double a = x[n[k]].y() - y, b = x[n[l]].y() - y;
+        const double a = plane.height(x[n[k]]), b = plane.height(x[n[l]]);
         if ((a >= 0) == (b >= 0) || ends == 2) continue;
         const double s = a / (a - b);
         in_space[ends] = (1 - s) * x[n[k]] + s * x[n[l]];
@@ -100,22 +107,25 @@ bool cut_triangle(const Garment& g, const Points& x, const PanelFabrics& fabrics
     return true;
 }
 
-/// By how much the section at height y, as far as triangles are connected to `seed`, is longer than allowed:
+/// By how much the section by a plane, as far as triangles are connected to `seed`, is longer than allowed:
 /// with those that are shorter making up for others, and without. `connected` has the triangles' neighbours.
 struct Excess {
     double sum = 0, over = 0;
+    std::vector<char> panels; ///< which the section goes through
 };
 Excess section_excess(const Garment& g, const EdgeTable& connected, const Points& x, const PanelFabrics& fabrics,
-                      int seed, double y) {
+                      int seed, const Plane& plane) {
     std::vector<char> seen(g.triangles.size(), 0);
     std::vector<int> open{seed};
     seen[seed] = 1;
     Excess excess;
+    excess.panels.assign(g.panel_names.size(), 0);
     while (!open.empty()) {
         const int t = open.back();
         open.pop_back();
         Cut cut;
-        if (!cut_triangle(g, x, fabrics, t, y, cut)) continue;
+        if (!cut_triangle(g, x, fabrics, t, plane, cut)) continue;
+        excess.panels[g.panel_of_triangle[t]] = 1;
         excess.sum += cut.space - cut.allowed;
         excess.over += std::max(0.0, cut.space - cut.allowed);
         for (int edge : connected.of_triangle[t]) {
@@ -129,13 +139,14 @@ Excess section_excess(const Garment& g, const EdgeTable& connected, const Points
     return excess;
 }
 
-/// Gaps at height y, one per seam: of the stitch that is nearest to it, when that is near.
-double gaps_at(const Garment& g, const Points& x, double y) {
-    std::map<int, std::pair<double, double>> nearest; // by seam: distance in height, gap
+/// Gaps on a plane, one per seam of the panels: of the stitch that is nearest to the plane, when that is near.
+double gaps_on(const Garment& g, const Points& x, const Plane& plane, const std::vector<char>& panels) {
+    std::map<int, std::pair<double, double>> nearest; // by seam: distance from the plane, gap
     for (const Stitch& s : g.stitches) {
+        const int panel = panel_of_node(g, s.a);
         const Vec3 to = seam_point(s, x);
-        const double away = std::abs(0.5 * (x[s.a].y() + to.y()) - y);
-        if (away > std::max(s.length, 0.005)) continue;
+        const double away = std::abs(plane.height(0.5 * (x[s.a] + to)));
+        if (away > std::max(s.length, 0.005) || panel < 0 || !panels[panel]) continue;
         const auto [at, fresh] = nearest.try_emplace(s.seam, away, (x[s.a] - to).norm());
         if (!fresh && away < at->second.first) at->second = {away, (x[s.a] - to).norm()};
     }
@@ -143,6 +154,20 @@ double gaps_at(const Garment& g, const Points& x, double y) {
     for (const auto& [seam, gap] : nearest)
         sum += gap.second;
     return sum;
+}
+
+/// The plane across a seam at a stitch of its; level where the seam has no other.
+Plane across_seam(const Garment& g, const Points& x, const Stitch& at) {
+    const Vec3 middle = 0.5 * (x[at.a] + seam_point(at, x));
+    Vec3 along = Vec3::UnitY();
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Stitch& s : g.stitches) {
+        const double away = (x[s.a] - x[at.a]).norm();
+        if (s.seam != at.seam || s.a == at.a || away == 0 || away >= nearest) continue;
+        nearest = away;
+        along = (x[s.a] - x[at.a]) / away;
+    }
+    return {middle, along};
 }
 
 } // namespace
@@ -221,9 +246,15 @@ Tightness find_tightness(const Garment& g, const Points& x, const PanelFabrics& 
         }
     }
     if (worst.triangle < 0) return worst;
+    // The section follows the direction of most stretch: round a sleeve, it is not level.
     const Triangle n = g.nodes(worst.triangle);
-    const double y = (x[n[0]].y() + x[n[1]].y() + x[n[2]].y()) / 3;
-    const Excess excess = section_excess(g, g.edges, x, fabrics, worst.triangle, y);
+    Eigen::Matrix<double, 3, 2> edges;
+    edges << x[n[1]] - x[n[0]], x[n[2]] - x[n[0]];
+    const Eigen::Matrix<double, 3, 2> stretch = edges * g.rest.edges[worst.triangle].inverse();
+    const Eigen::SelfAdjointEigenSolver<Mat2> principal(stretch.transpose() * stretch);
+    const Vec3 round = stretch * principal.eigenvectors().col(1), out = edges.col(0).cross(edges.col(1));
+    const Plane plane{(x[n[0]] + x[n[1]] + x[n[2]]) / 3, round.cross(out).normalized()};
+    const Excess excess = section_excess(g, g.edges, x, fabrics, worst.triangle, plane);
     worst.missing = excess.sum > 0 ? excess.sum : excess.over;
     return worst;
 }
@@ -232,12 +263,14 @@ double missing_at_open_seam(const Garment& g, const Points& x, const PanelFabric
     const int k = widest_stitch(g, x);
     if (k < 0) return 0;
     const Stitch& s = g.stitches[k];
-    const double y = 0.5 * (x[s.a].y() + seam_point(s, x).y());
+    const Plane plane = across_seam(g, x, s);
     const EdgeTable closed = close_seams(g).edges;
     Cut cut;
-    for (int t = 0; t < int(g.triangles.size()); ++t)
-        if (g.panel_of_triangle[t] == panel_of_node(g, s.a) && cut_triangle(g, x, fabrics, t, y, cut))
-            return section_excess(g, closed, x, fabrics, t, y).sum + gaps_at(g, x, y);
+    for (int t = 0; t < int(g.triangles.size()); ++t) {
+        if (g.panel_of_triangle[t] != panel_of_node(g, s.a) || !cut_triangle(g, x, fabrics, t, plane, cut)) continue;
+        const Excess excess = section_excess(g, closed, x, fabrics, t, plane);
+        return excess.sum + gaps_on(g, x, plane, excess.panels);
+    }
     return 0;
 }
 

@@ -24,17 +24,17 @@ std::string open_seam(const Garment& garment, const Points& x, const std::vector
                       const TriMesh& body, const std::vector<ContactPair>& touching);
 
 /// Where the cloth is stretched most beyond its fabric's limit, and by how much the connected section of the garment
-/// at that height is longer than the limits of its cloth allow.
+/// along the direction of most stretch there is longer than the limits of its cloth allow.
 struct Tightness {
     int triangle = -1;    ///< -1: nowhere beyond a limit
     double strain = 0;    ///< of the yarn that is worst there
     double limit = 0;
     bool warp = false;    ///< which yarn
-    double missing = 0;   ///< m, of the connected section at its height
+    double missing = 0;   ///< m, of that section
 };
 Tightness find_tightness(const Garment& garment, const Points& x, const PanelFabrics& fabrics);
 
-/// The same for a garment whose seams are open, at the height of its widest stitch: how much longer the section with
+/// The same for a garment whose seams are open, across the seam at its widest stitch: how much longer the section with
 /// the gaps of its seams is than its cloth may become. At most 0 when there is cloth enough and something else keeps
 /// the seam open.
 double missing_at_open_seam(const Garment& garment, const Points& x, const PanelFabrics& fabrics);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/measure.h"
+#include "draping/where.h"
 #include "geometry/distance.h"
 #include "tests/support/flat_mesh.h"
 #include "tests/support/random.h"
@@ -292,4 +293,20 @@ TEST_CASE("clearance is that of comparing every corner, side and face") {
     const TriMesh other = {{{0, -1, 1e-3}, {0, 1, 1e-3}, {1, 0, 1}, {-1, 0, 1}}, {{0, 1, 2}, {1, 0, 3}}};
     CHECK(clearance_min(roof.triangles, roof.points, other) == Approx(1e-3));
     CHECK(clearance_min(roof.triangles, roof.points, {}) == std::numeric_limits<double>::infinity());
+}
+
+TEST_CASE("what is missing round a sleeve is measured round it, however the arm is held") {
+    const double radius = 0.05, stretch = 1.1;
+    const Tube tube = tube_garment(radius, 0, 0.2, 40, 20);
+    Fabric fabric = fabric_preset("poplin");
+    fabric.limit_weft = 0.03;
+    for (const double degrees : {0.0, 45.0, 90.0}) {
+        const Eigen::AngleAxisd raised(degrees * EIGEN_PI / 180, Vec3::UnitZ());
+        Points x = tube.x;
+        for (Vec3& p : x) p = raised * Vec3(stretch * p.x(), p.y(), stretch * p.z());
+        const Tightness t = find_tightness(tube.garment, x, {fabric});
+        CHECK(t.strain == Approx(stretch - 1).margin(2e-3));
+        CHECK_FALSE(t.warp);
+        CHECK(t.missing == Approx(2 * EIGEN_PI * radius * (stretch - 1.03)).margin(1e-3));
+    }
 }

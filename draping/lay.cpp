@@ -22,6 +22,7 @@ constexpr double beyond = 0.02;    // m, from the body for a panel that is moved
 constexpr double view = 0.6;        // m, that a panel's right side looks
 constexpr double near_gap = 0.03;   // m, below which all gaps weigh the same
 constexpr double as_it_was = 1e-4;  // m2, weight of the present rotation where seams leave a turn free
+constexpr double seeing = 0.1;      // share of a piece, or of the body's silhouette if that is smaller, that has to see it
 constexpr double flat = 0.5;        // size of a piece's mean normal: below, it has no side
 constexpr int reweightings = 8;
 constexpr int moves_per_piece = 4;  // on average, so that it ends
@@ -45,6 +46,7 @@ struct Laying {
     const Garment& garment;
     const TriMesh& body;
     Bvh body_tree;
+    double silhouette; ///< m2, of the body, mean of all directions (Cauchy; of a convex one)
     Points x;
     std::vector<Piece> pieces = {};
     std::vector<std::vector<Thread>> threads = {}; ///< by piece
@@ -132,8 +134,9 @@ Pose fit(const Laying& l, int piece, bool turn) {
 }
 
 /// How far a piece must go on along its right side's normal until the body no longer lies before that side; 0
-/// where less than a tenth of it sees the body. What lies in the body counts as well in a new place, but not
-/// where the file puts it: place_clear() pushes it out by the shortest way.
+/// where hardly any of it sees the body: a full circle of cloth is much larger than the body before it. What lies in
+/// the body counts as well in a new place, but not where the file puts it: place_clear() pushes it out by the shortest
+/// way.
 double through_to_outside(const Laying& l, int piece, const Pose& pose, bool new_place) {
     const Vec3 normal = pose.rotation * l.pieces[piece].normal;
     int seen = 0;
@@ -146,7 +149,8 @@ double through_to_outside(const Laying& l, int piece, const Pose& pose, bool new
         ++seen;
         farthest = std::max(farthest, m.last * view);
     }
-    return 10 * seen > int(l.pieces[piece].nodes.size()) ? farthest + beyond : 0;
+    const double share = seeing * std::min(1.0, l.silhouette / l.pieces[piece].area);
+    return seen > share * double(l.pieces[piece].nodes.size()) ? farthest + beyond : 0;
 }
 
 /// Mean length of a piece's threads were it moved, and more where its right side would look at the body, m.
@@ -198,7 +202,9 @@ void move(Laying& l, int piece, const Pose& pose) {
 } // namespace
 
 Laid lay_anew(const Garment& garment, const Points& x, const TriMesh& body, const LayOptions& options) {
-    Laying l{garment, body, Bvh(triangle_boxes(body.points, body.triangles, 0)), x};
+    double surface = 0;
+    for (const Triangle& t : body.triangles) surface += triangle_area(body.points, t);
+    Laying l{garment, body, Bvh(triangle_boxes(body.points, body.triangles, 0)), surface / 4, x};
     collect_threads(l);
     const int count = int(l.pieces.size()), most_moves = sides_known(l) ? moves_per_piece * count : 0;
     std::vector<Pose> total(count);

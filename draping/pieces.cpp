@@ -38,18 +38,17 @@ std::vector<Piece> pieces_of(const Garment& g, const Points& x) {
     for (int t = 0; t < int(g.triangles.size()); ++t)
         pieces[piece_of[g.panel_of_triangle[t]]].triangles.push_back(t);
     for (Piece& piece : pieces) {
-        double area = 0;
         for (int t : piece.triangles) {
             const Triangle c = g.nodes(t);
             const Vec3 n = 0.5 * (x[c[1]] - x[c[0]]).cross(x[c[2]] - x[c[0]]);
             piece.normal += n;
             piece.middle += n.norm() * (x[c[0]] + x[c[1]] + x[c[2]]) / 3;
-            area += n.norm();
+            piece.area += n.norm();
             piece.nodes.insert(piece.nodes.end(), c.begin(), c.end());
         }
-        if (area > 0) {
-            piece.middle /= area;
-            piece.flatness = piece.normal.norm() / area;
+        if (piece.area > 0) {
+            piece.middle /= piece.area;
+            piece.flatness = piece.normal.norm() / piece.area;
         }
         if (piece.normal.norm() > 0) piece.normal.normalize();
         std::sort(piece.nodes.begin(), piece.nodes.end());

@@ -13,6 +13,7 @@ struct Piece {
     std::vector<int> triangles; ///< of the garment
     std::vector<int> nodes;     ///< ascending
     Vec3 normal = Vec3::Zero(); ///< mean, of the right side, unit
+    double area = 0;            ///< m2
     double flatness = 0;        ///< length of the mean normal over unit ones: 1 flat, about 0 closed round
     Vec3 middle = Vec3::Zero(); ///< by area
 };

@@ -47,6 +47,15 @@ TEST_CASE("panels before and behind a body stay where they are, near as their se
     CHECK(laid.x == c.x);
 }
 
+TEST_CASE("panels much larger than the body are not drawn through it to what they are sewn to") {
+    Cloth c;
+    add_front(c, {0, 0, 0.1});
+    add_back(c, {0, 0, -0.1});
+    sew_sides(c, 0, 1);
+    const TriMesh slight = box({-0.015, -0.04, -0.06}, {0.015, 0.04, 0.06});
+    CHECK(lay_anew(c.garment, c.x, slight).moved.empty());
+}
+
 TEST_CASE("a panel in the place of another, its right side to the body, goes through it to its own side") {
     Cloth c = tabard();
     put(c, 3, Mat3::Identity(), middle(c, c.x, 0) - middle(c, c.x, 3));

@@ -22,14 +22,17 @@ constexpr double most_moved = 0.5;        // share of the nodes; if more have mo
 constexpr double spare_slack = 2;         // times what a node needs, beyond which its slack is taken in
 constexpr int query_chunk = 64;
 constexpr double floor_share = 0.1;       // of the contact distance that is never entered
+constexpr double all_but_parallel = 1e-12; // squared sine, below which a normal is made of rounding
 constexpr double barrier_stiffness = 1e7; // Pa/m for a cloth of 0.15 kg/m2 at a distance of half a millimetre
 constexpr double cloth_stiffness = 0.1;   // of the barrier, between cloth and cloth, which press lightly
 
 /// By how much the plane of the triangle, or the two parallel planes through the edges, show a pair to be apart.
 double apart_by_planes(const std::array<Vec3, 4>& x, bool edge_edge) {
-    const Vec3 normal = edge_edge ? (x[1] - x[0]).cross(x[3] - x[2]) : (x[2] - x[1]).cross(x[3] - x[1]);
+    const Vec3 u = edge_edge ? x[1] - x[0] : x[2] - x[1], v = x[3] - x[edge_edge ? 2 : 1];
+    const Vec3 normal = u.cross(v);
     const double height = normal.dot(edge_edge ? x[2] - x[0] : x[1] - x[0]), squared = normal.squaredNorm();
-    return squared > 0 ? 0.999999 * std::abs(height) / std::sqrt(squared) : 0;
+    if (squared <= all_but_parallel * u.squaredNorm() * v.squaredNorm()) return 0;
+    return 0.999999 * std::abs(height) / std::sqrt(squared);
 }
 
 /// The most that the two of a pair come nearer to each other in a motion.

@@ -82,6 +82,22 @@ TEST_CASE("contact: a body that moves is stopped by the cloth") {
     CHECK(t < 0.02);
 }
 
+TEST_CASE("contact: parallel edges are not passed over for a normal made of rounding") {
+    test::Random random(3);
+    for (int k = 0; k < 200; ++k) {
+        const Vec3 along = random.vec3(1).normalized(), across = along.unitOrthogonal(), out = along.cross(across);
+        const Vec3 at = Vec3::Zero(); // where coordinates have no rounding of their own
+        const Points x = {at, at + 0.02 * along, at - 0.02 * across,
+                          at + 0.0015 * out + 0.007 * along, at + 0.0015 * out + 0.021 * along, at + 0.02 * across};
+        Contact contact(two_sheets(), {}, options());
+        contact.prepare(x, Eigen::VectorXd::Zero(18));
+        const auto& active = contact.active(x);
+        CHECK(std::any_of(active.begin(), active.end(), [&](const ActivePair& a) {
+            return contact.pair(a.pair).p == std::array<int, 4>{0, 1, 3, 4};
+        }));
+    }
+}
+
 TEST_CASE("contact: nodes that a seam will merge do not repel each other") {
     ContactCloth cloth = two_sheets();
     cloth.group = {0, 1, 2, 0, 1, 2};

@@ -66,6 +66,14 @@ int thread_through_cloth(const Garment& g, const Points& x, const Stitch& s) {
     return found;
 }
 
+/// What a unit of weft (column 0) and of warp (column 1) has become in space.
+Eigen::Matrix<double, 3, 2> yarns_of(const Garment& g, const Points& x, int t) {
+    const Triangle n = g.nodes(t);
+    Eigen::Matrix<double, 3, 2> edges;
+    edges << x[n[1]] - x[n[0]], x[n[2]] - x[n[0]];
+    return edges * g.rest.edges[t].inverse();
+}
+
 struct Plane {
     Vec3 point, normal;
     double height(const Vec3& p) const { return normal.dot(p - point); }
@@ -143,10 +151,10 @@ Excess section_excess(const Garment& g, const EdgeTable& connected, const Points
 double gaps_on(const Garment& g, const Points& x, const Plane& plane, const std::vector<char>& panels) {
     std::map<int, std::pair<double, double>> nearest; // by seam: distance from the plane, gap
     for (const Stitch& s : g.stitches) {
-        const int panel = panel_of_node(g, s.a);
         const Vec3 to = seam_point(s, x);
         const double away = std::abs(plane.height(0.5 * (x[s.a] + to)));
-        if (away > std::max(s.length, 0.005) || panel < 0 || !panels[panel]) continue;
+        if (away > std::max(s.length, 0.005)) continue;
+        if (const int panel = panel_of_node(g, s.a); panel < 0 || !panels[panel]) continue;
         const auto [at, fresh] = nearest.try_emplace(s.seam, away, (x[s.a] - to).norm());
         if (!fresh && away < at->second.first) at->second = {away, (x[s.a] - to).norm()};
     }
@@ -233,10 +241,7 @@ Tightness find_tightness(const Garment& g, const Points& x, const PanelFabrics& 
     double most = 0;
     for (int t = 0; t < int(g.triangles.size()); ++t) {
         const Fabric& f = fabrics[g.panel_of_triangle[t]];
-        const Triangle n = g.nodes(t);
-        Eigen::Matrix<double, 3, 2> edges;
-        edges << x[n[1]] - x[n[0]], x[n[2]] - x[n[0]];
-        const Eigen::Matrix<double, 3, 2> yarns = edges * g.rest.edges[t].inverse();
+        const Eigen::Matrix<double, 3, 2> yarns = yarns_of(g, x, t);
         for (const bool warp : {false, true}) {
             const double limit = warp ? f.limit_warp : f.limit_weft;
             const double strain = yarns.col(warp ? 1 : 0).norm() - 1;
@@ -248,11 +253,9 @@ Tightness find_tightness(const Garment& g, const Points& x, const PanelFabrics& 
     if (worst.triangle < 0) return worst;
     // The section follows the direction of most stretch: round a sleeve, it is not level.
     const Triangle n = g.nodes(worst.triangle);
-    Eigen::Matrix<double, 3, 2> edges;
-    edges << x[n[1]] - x[n[0]], x[n[2]] - x[n[0]];
-    const Eigen::Matrix<double, 3, 2> stretch = edges * g.rest.edges[worst.triangle].inverse();
-    const Eigen::SelfAdjointEigenSolver<Mat2> principal(stretch.transpose() * stretch);
-    const Vec3 round = stretch * principal.eigenvectors().col(1), out = edges.col(0).cross(edges.col(1));
+    const Eigen::Matrix<double, 3, 2> yarns = yarns_of(g, x, worst.triangle);
+    const Eigen::SelfAdjointEigenSolver<Mat2> principal(yarns.transpose() * yarns);
+    const Vec3 round = yarns * principal.eigenvectors().col(1), out = yarns.col(0).cross(yarns.col(1));
     const Plane plane{(x[n[0]] + x[n[1]] + x[n[2]]) / 3, round.cross(out).normalized()};
     const Excess excess = section_excess(g, g.edges, x, fabrics, worst.triangle, plane);
     worst.missing = excess.sum > 0 ? excess.sum : excess.over;
@@ -265,9 +268,10 @@ double missing_at_open_seam(const Garment& g, const Points& x, const PanelFabric
     const Stitch& s = g.stitches[k];
     const Plane plane = across_seam(g, x, s);
     const EdgeTable closed = close_seams(g).edges;
+    const int panel = panel_of_node(g, s.a);
     Cut cut;
     for (int t = 0; t < int(g.triangles.size()); ++t) {
-        if (g.panel_of_triangle[t] != panel_of_node(g, s.a) || !cut_triangle(g, x, fabrics, t, plane, cut)) continue;
+        if (g.panel_of_triangle[t] != panel || !cut_triangle(g, x, fabrics, t, plane, cut)) continue;
         const Excess excess = section_excess(g, closed, x, fabrics, t, plane);
         return excess.sum + gaps_on(g, x, plane, excess.panels);
     }

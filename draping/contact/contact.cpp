@@ -210,9 +210,11 @@ void Contact::set_body(const Points& body) {
     active_at_.clear();
 }
 
-std::array<Vec3, 4> Contact::corners(const Points& x, const ContactPair& p) const {
-    return {at(x, p.p[0]), at(x, p.p[1]), at(x, p.p[2]), at(x, p.p[3])};
+std::array<Vec3, 4> Contact::corners(const Points& x, const std::array<int, 4>& p) const {
+    return {at(x, p[0]), at(x, p[1]), at(x, p[2]), at(x, p[3])};
 }
+
+std::array<Vec3, 4> Contact::corners(const Points& x, const ContactPair& p) const { return corners(x, p.p); }
 
 Barrier Contact::barrier(const ContactPair& p) const {
     Barrier b = p.with_body ? options_.body : options_.cloth;
@@ -411,7 +413,7 @@ void Contact::find_pairs(const std::vector<char>& moved_node) {
                         if (!body && std::any_of(p.begin(), p.end(), out)) return;
                         const auto still = [&](int i) { return i >= nodes_ || cloth_.still[i]; };
                         if (!cloth_.still.empty() && std::all_of(p.begin(), p.end(), still)) return;
-                        const std::array<Vec3, 4> corner{at(x, p[0]), at(x, p[1]), at(x, p[2]), at(x, p[3])};
+                        const std::array<Vec3, 4> corner = corners(x, p);
                         const double reach = this->reach(kind) + moved(room, l);
                         if (apart_by_planes(corner, edge_edge) > reach) return;
                         const double d = pair_geometry(corner, edge_edge).d;
@@ -491,8 +493,7 @@ const std::vector<ActivePair>& Contact::active(const Points& x) const {
                 apart_[i] = rounded_down(l.built - moved(travel, l));
                 if (apart_[i] >= l.distance) continue;
                 const bool edge_edge = of_edges(kind_of(l));
-                const std::array<int, 4> k = points(l);
-                const std::array<Vec3, 4> corner{at(x, k[0]), at(x, k[1]), at(x, k[2]), at(x, k[3])};
+                const std::array<Vec3, 4> corner = corners(x, points(l));
                 apart_[i] = std::max(apart_[i], rounded_down(apart_by_planes(corner, edge_edge)));
                 if (apart_[i] >= l.distance) continue;
                 ActivePair a{i, pair_geometry(corner, edge_edge), {}};
@@ -614,7 +615,7 @@ double Contact::feasible_step(const Points& x, const Eigen::VectorXd& dx, const 
                 for (int k = 0; k < 4; ++k) m.dx[k] = motion_of(points[k]);
                 if (apart_[i] - approach(m.dx, edge_edge) > l.distance) continue;
                 const ContactPair p = pair(l);
-                m.x = corners(x, p);
+                m.x = corners(x, points);
                 ToiOptions options;
                 options.keep = keep_of_gap;
                 options.min_distance = barrier(p).floor;

@@ -166,6 +166,7 @@ private:
     Barrier barrier(const ContactPair& p) const;
     double reach(ListedPair::Kind kind) const;
     std::array<int, 4> points(const ListedPair& p) const;
+    std::array<Vec3, 4> corners(const Points& x, const std::array<int, 4>& points) const;
     ContactPair pair(const ListedPair& p) const;
     void find_pairs(const std::vector<char>& moved);
     double limited_distance(const std::array<int, 4>& points) const;

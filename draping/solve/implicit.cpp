@@ -14,14 +14,13 @@ constexpr double left_over = 1e-5; // of the size of a solution, that conjugate 
 constexpr int most_gradients = 50;
 constexpr int most_rounds = 2;     // solves of a step, until every touch that slides or pulls is known
 
-/// N/m per node: a third of the trace of its own entries.
+} // namespace
+
 std::vector<double> own_stiffness(const BlockMatrix& a) {
     std::vector<double> own(a.block_rows(), 0.0);
     for (int i = 0; i < a.rows(); ++i) own[i / 3] += a.values()[a.scalar_columns()[i]] / 3;
     return own;
 }
-
-} // namespace
 
 /// The velocities by the cloth's own forces and by what contact did in the last step; touches that pull are let go
 /// on the way, and those that friction does not hold slide.

@@ -10,6 +10,9 @@
 
 namespace toile {
 
+/// Per node, a third of the trace of its own entries (N/m of a second derivative).
+std::vector<double> own_stiffness(const BlockMatrix& a);
+
 class ImplicitStepper : public ProblemStepper {
 public:
     using ProblemStepper::ProblemStepper;

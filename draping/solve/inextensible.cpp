@@ -13,6 +13,7 @@ namespace {
 constexpr double hold_share = 100; // of a node's mass, with which a touch holds it against the yarns
 
 constexpr double line_share = 1e3; // of the mass that it moves, over dt2, with which a line is stiff in the solve
+constexpr double beside_own = 5;    // times what else its ends are stiff by, added to that
 
 } // namespace
 
@@ -38,15 +39,21 @@ std::vector<Mat3> InextensibleStepper::mobility(const Moving& cloth) const {
     return mass;
 }
 
-/// Lines are stiff in the solve, so that projecting has little left to do: it knows no stiffness, of shear or of what holds the
-/// cloth, and would put energy into it.
+/// Lines are stiff in the solve, beside mass and beside shear, so that projecting has little left to do: it knows no stiffness, of
+/// shear or of what holds the cloth, and would put energy into it.
 void InextensibleStepper::stiffen(const Points& x) {
     const double dt = options_.time_step;
     const std::vector<double> inverse = inverse_mass();
+    if (own_stiffness_.empty()) { // lines have none yet
+        bool pattern_changed = false;
+        problem_.arrive(x);
+        own_stiffness_ = own_stiffness(problem_.hessian(x, false, pattern_changed));
+    }
     for (std::size_t k = 0; k < tension_.lines().size(); ++k) {
         const LengthConstraint& c = tension_.lines()[k];
         const double mobility = inverse[c.a] + inverse[c.b], now = strain(c, x);
-        tension_.stiffness[k] = mobility > 0 ? line_share / (mobility * dt * dt) : 0;
+        const double own = own_stiffness_[c.a] + own_stiffness_[c.b];
+        tension_.stiffness[k] = mobility > 0 ? line_share / (mobility * dt * dt) + beside_own * own : 0;
         tension_.target[k] = c.length * (1 + now - std::clamp(now, -drawn_in, drawn_in));
     }
 }

@@ -31,6 +31,7 @@ private:
     std::vector<Mat3> mobility(const Moving& cloth) const;
 
     Tension& tension_;
+    std::vector<double> own_stiffness_; ///< N/m, per node, of all but the lines, at the start
     FastProjection projection_;
     ProjectionDone projected_;
     double strain_ = 0;

@@ -22,7 +22,7 @@ constexpr double share = 0.5;          // of the work of all, that the motion is
 bool clear(DrapeRun& run, ClothProblem& problem, Cholesky& factor) {
     const bool apart = take_apart_or_leave_out(run, problem.contact());
     clear_of_body(run, problem, factor);
-    return apart && run.grown;
+    return apart && run.result.drawn_in == 0;
 }
 
 /// Steps from frame to frame: as many as are no longer than what the method wants.

@@ -109,10 +109,12 @@ std::string hook_sentence(const HookFacts& h) {
 
 std::string growth_sentence(const DrapeFacts& f) {
     std::string list;
-    for (std::size_t l = 0; l < f.drawn_in.size(); ++l)
-        if (f.drawn_in[l] > 0)
-            list += (list.empty() ? "" : ", ") +
-                    text("%.0f mm at the level of %.3g mm", 1e3 * f.drawn_in[l], 1e3 * f.edge_lengths[l]);
+    for (const auto& [edge_length, depth] : f.drawn_in)
+        if (depth > 0)
+            list += (list.empty() ? "" : ", ") + text("%.0f mm at the level of %.3g mm", 1e3 * depth, 1e3 * edge_length);
+    if (f.still_drawn_in > 0)
+        return "the body was drawn in, since the cloth started in it, and did not grow back whole: " + list +
+               text(", of which %.1f mm are left", 1e3 * f.still_drawn_in);
     if (list.empty()) return "the body was never drawn in: the cloth started clear of it on every level";
     return "the body was drawn in and grew back under contact, since the cloth started in it: " + list;
 }

@@ -7,6 +7,8 @@
 #include "draping/drape.h"
 #include "draping/measure.h"
 
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,7 +45,8 @@ struct DrapeFacts {
     FrictionCoefficients friction;
     double clearance = 0;            ///< m
     std::vector<HookFacts> hooks;
-    std::vector<double> drawn_in;    ///< m, per level: how far the body was drawn in before it grew back
+    std::map<double, double, std::greater<>> drawn_in; ///< m, by the edge length of levels: how far the body was drawn in to grow back
+    double still_drawn_in = 0;       ///< m, DrapeResult::drawn_in
     std::vector<double> edge_lengths; ///< m, per level
     int untangled = 0;               ///< crossings of edges and triangles of cloth that were taken apart
     int untangled_as_mesh = 0;       ///< levels on which the rest was taken apart as a mesh

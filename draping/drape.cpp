@@ -143,6 +143,7 @@ void decide(DrapeRun& run) {
     for (const std::string& label : run.held) run.facts.hooks.push_back({label, true, run.carried_at[label], 0, 0});
     const std::map<std::string, double> now = label_heights(run.garment, run.x, all_hooked(run));
     for (HookFacts& h : run.facts.hooks) h.end = now.at(h.label);
+    run.facts.still_drawn_in = run.result.drawn_in;
     for (const LevelReport& level : run.result.levels) run.facts.edge_lengths.push_back(level.edge_length);
     const std::vector<std::string> all = decisions(run.facts, run.garment, run.x, run.fabrics, run.avatar);
     run.result.decisions.insert(run.result.decisions.end(), all.begin(), all.end());
@@ -242,11 +243,11 @@ DrapeResult drape_from_coarsest(const Staging& staging, const Avatar& avatar, co
 bool seams_closed(const DrapeResult& r) { return seam_gap_max(r.garment, r.state.positions) < weld_gap; }
 
 /// Whether triangles that were too coarse to be sewn, or to fold as the cloth has to, may have kept a drape from coming to
-/// rest. What is too small counts when a seam stayed open: its cloth may have caught on what it would have passed.
+/// rest. What is too small counts when a seam stayed open, or the body did not grow back: its cloth may have caught on what it would have passed.
 bool coarsest_may_be_to_blame(const Staging& staging, const DrapeResult& r) {
     const bool sewn = r.levels[0].edge_length == staging.levels[0].edge_length; // and not taken up from an earlier drape
     return staging.levels.size() > 1 && sewn &&
-           (r.status == DrapeStatus::stalled || (r.status == DrapeStatus::too_small && !seams_closed(r)));
+           (r.status == DrapeStatus::stalled || (r.status == DrapeStatus::too_small && (!seams_closed(r) || r.drawn_in > 0)));
 }
 
 } // namespace
@@ -293,7 +294,7 @@ DrapeResult drape(const Staging& staging, const Avatar& avatar, const PanelFabri
     DrapeResult again = drape_from_coarsest(finer, avatar, fabrics, o);
     const std::string anew = text("the garment was sewn anew on a mesh of %.3g mm", 1e3 * finer.levels[0].edge_length);
     const bool better = again.status == DrapeStatus::converged || again.status == DrapeStatus::animated ||
-                        (seams_closed(again) && !seams_closed(result));
+                        (seams_closed(again) && (!seams_closed(result) || (result.drawn_in > 0 && again.drawn_in == 0)));
     if (!better) {
         result.decisions.push_back(anew + ", which was no better: " + to_string(again.status) + ", " + again.where);
         return result;

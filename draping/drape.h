@@ -120,6 +120,7 @@ struct DrapeResult {
     double residual = 0; ///< infinity when nothing was settled
     double tolerance = 0; ///< of the residual; 1 where DrapeOptions::still ended it
     double last_step = 0; ///< m, of the node that the last step to rest moved farthest; infinity when there was none
+    double drawn_in = 0; ///< m, by which the body, drawn in where the cloth started in it, has not grown back
     FrictionCoefficients friction;
     Method method = Method::equilibrium;
     BarrierReport barrier;

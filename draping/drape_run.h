@@ -49,7 +49,6 @@ struct DrapeRun {
     std::vector<int> joined = {}; ///< its node of every one of the open garment, on the coarsest level
     Points x = {};             ///< nodes of the garment
     Laid laid = {};            ///< the coarsest level where it starts out
-    bool grown = true;         ///< the body has its full size
     std::vector<std::string> held = {}, carried = {}; ///< labels of hooks that stay, and of those that are let go
     std::map<std::string, double> carried_at = {}; ///< mean height of each of these where the file puts it
     bool open = false;         ///< a seam could not be closed

@@ -90,9 +90,9 @@ struct TightWatch {
         if (fell_off(run)) return true;
         if (iteration == 0 || !run.last_level()) return false;
         const double last = missing;
-        missing = find_tightness(run.garment, run.x, run.fabrics).missing;
+        missing = find_tightness(run.garment, run.x, run.fabrics).any_missing();
         const double much = iteration < long_tight ? too_tight : tight;
-        return !run.grown || (missing > much && missing > (1 - tight_gain) * last);
+        return run.result.drawn_in > 0 || (missing > much && missing > (1 - tight_gain) * last);
     }
 };
 
@@ -148,6 +148,9 @@ void note_where(DrapeRun& run, const ClothProblem& problem, SettleEnd end, int w
     if (end == SettleEnd::stalled && problem.blocking_pair() >= 0)
         where += "; no step is possible, " +
                  place_of_pair(run.garment, run.x, problem.contact().pair(problem.blocking_pair())) + " is in the way";
+    if (run.result.drawn_in > 0)
+        where = text("the body, drawn in since the cloth started in it, could not grow back: %.1f mm of its full size are left; ",
+                     1e3 * run.result.drawn_in) + where;
     if (problem.kept_strain()) return; // of triangles of its own: those between nodes do not tell what is too small
     const Tightness t = find_tightness(run.garment, run.x, run.fabrics);
     if (t.triangle < 0) return;
@@ -156,11 +159,12 @@ void note_where(DrapeRun& run, const ClothProblem& problem, SettleEnd end, int w
         text(" is stretched by %.1f %% along the %s, more than the %.1f %% that ", 100 * t.strain,
              t.warp ? "warp" : "weft", 100 * t.limit) +
         run.fabrics[run.garment.panel_of_triangle[t.triangle]].name + " allows";
-    if (t.missing > tight && run.result.status == DrapeStatus::stalled &&
+    // At rest a section that is too short as a whole is so by however little: no limit, however hard, has helped.
+    const bool short_round = t.any_missing() > tight || (end == SettleEnd::settled && t.missing > 0);
+    if (short_round && run.result.status == DrapeStatus::stalled &&
         touches_body(problem, run.x, run.x[run.garment.nodes(t.triangle)[0]].y(), run.edge_length()))
         run.result.status = DrapeStatus::too_small;
-    where = stretched + (t.missing > tight ? text("; %.1f cm are missing round the garment there", 100 * t.missing)
-                                           : "; " + where);
+    where = stretched + (short_round ? text("; %.2g cm are missing round the garment there", 100 * t.any_missing()) : "; " + where);
 }
 
 SettleResult settle_within_limits(DrapeRun& run, ClothProblem& problem, Cholesky& factor, const SettleOptions& o,
@@ -305,7 +309,7 @@ void settle_level(DrapeRun& run) {
     ContactReport& report = run.result.contact;
     if (run.level == 0 || run.facts.restarted)
         report.guarantee = motion ? motion->response->guarantee() : Guarantee::no_crossing;
-    if (tangled || !run.grown || report.unresolved > 0) report.guarantee = Guarantee::none;
+    if (tangled || run.result.drawn_in > 0 || report.unresolved > 0) report.guarantee = Guarantee::none;
     run.result.barrier = {contact.body.distance, contact.body.stiffness, contact.cloth.stiffness};
     run.facts.kept_strain = motion ? motion->stepper->kept_strain() : problem.kept_strain();
     if (run.last_level()) {
@@ -316,7 +320,7 @@ void settle_level(DrapeRun& run) {
         const bool out_of_steps = motion ? !at_rest && rest.broken.empty() : run.iterations_left <= 0 && beyond == 0;
         if (run.stopped || out_of_steps)
             run.result.status = DrapeStatus::limit;
-        else if (!run.grown)
+        else if (run.result.drawn_in > 0)
             run.result.status = DrapeStatus::too_small;
         else if (at_rest && (beyond == 0 || !sheet)) // other methods promise no limits
             run.result.status = DrapeStatus::converged;

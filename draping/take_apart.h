@@ -13,8 +13,8 @@ namespace toile {
 bool take_apart_or_leave_out(DrapeRun& run, Contact& contact);
 
 /// Draws the body in until the cloth is clear of it, and lets it grow back under contact. Fine triangles cut
-/// the creases and curves of the coarse ones they come from, by a millimetre or so. `run.grown` tells whether
-/// the body got back to its full size.
+/// the creases and curves of the coarse ones they come from, by a millimetre or so. `run.result.drawn_in`
+/// tells by how much the body did not get back to its full size.
 void clear_of_body(DrapeRun& run, ClothProblem& problem, Cholesky& factor);
 
 } // namespace toile

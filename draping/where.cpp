@@ -16,6 +16,8 @@ namespace toile {
 
 namespace {
 
+constexpr std::size_t most_sections = 32; // of cloth that is too tight: those where it is so most may all leave it over an edge
+
 std::string coordinates(const Vec3& p) {
     return text("(%.3f, %.3f, %.3f) m", p.x(), p.y(), p.z());
 }
@@ -85,12 +87,15 @@ struct Cut {
     double allowed = 0; ///< m, what its flat length may be stretched to
 };
 
-/// Yarn limits as an ellipse: what the cloth may be stretched to along a direction of the flat.
-double allowed_length(const Vec2& flat, const Fabric& f) {
-    const double length = flat.norm();
-    if (length == 0) return 0;
-    const double weft = flat.x() * flat.x(), warp = flat.y() * flat.y();
-    return length + (f.limit_weft * weft + f.limit_warp * warp) / length;
+/// What a length of the flat may be stretched to: with both yarns at their limits, as far as they have one, and sheared as it
+/// is, up to the limit of that.
+double allowed_length(const Vec2& flat, const Fabric& f, const Eigen::Matrix<double, 3, 2>& yarns) {
+    const double weft = yarns.col(0).norm(), warp = yarns.col(1).norm();
+    const double most_shear = f.limit_shear > 0 ? std::sin(f.limit_shear) : 1;
+    const double shear = weft > 0 && warp > 0 ? std::clamp(yarns.col(0).dot(yarns.col(1)) / (weft * warp), -most_shear, most_shear) : 0;
+    const double a = flat.x() * (f.limit_weft > 0 ? 1 + f.limit_weft : weft);
+    const double b = flat.y() * (f.limit_warp > 0 ? 1 + f.limit_warp : warp);
+    return std::sqrt(a * a + b * b + 2 * a * b * shear);
 }
 
 bool cut_triangle(const Garment& g, const Points& x, const PanelFabrics& fabrics, int t, const Plane& plane,
@@ -111,7 +116,7 @@ bool cut_triangle(const Garment& g, const Points& x, const PanelFabrics& fabrics
     }
     if (ends < 2) return false;
     cut = {(in_space[1] - in_space[0]).norm(),
-           allowed_length(in_flat[1] - in_flat[0], fabrics[g.panel_of_triangle[t]])};
+           allowed_length(in_flat[1] - in_flat[0], fabrics[g.panel_of_triangle[t]], yarns_of(g, x, t))};
     return true;
 }
 
@@ -145,6 +150,15 @@ Excess section_excess(const Garment& g, const EdgeTable& connected, const Points
         }
     }
     return excess;
+}
+
+/// The plane through a triangle's middle that has its normal and its direction of most stretch in it: round a sleeve, it is not level.
+Plane along_most_stretch(const Garment& g, const Points& x, int t) {
+    const Triangle n = g.nodes(t);
+    const Eigen::Matrix<double, 3, 2> yarns = yarns_of(g, x, t);
+    const Eigen::SelfAdjointEigenSolver<Mat2> principal(yarns.transpose() * yarns);
+    const Vec3 round = yarns * principal.eigenvectors().col(1), out = yarns.col(0).cross(yarns.col(1));
+    return {(x[n[0]] + x[n[1]] + x[n[2]]) / 3, round.cross(out).normalized()};
 }
 
 /// Gaps on a plane, one per seam of the panels: of the stitch that is nearest to the plane, when that is near.
@@ -237,28 +251,28 @@ std::string open_seam(const Garment& g, const Points& x, const std::vector<std::
 }
 
 Tightness find_tightness(const Garment& g, const Points& x, const PanelFabrics& fabrics) {
-    Tightness worst;
-    double most = 0;
+    std::vector<Tightness> beyond;
     for (int t = 0; t < int(g.triangles.size()); ++t) {
         const Fabric& f = fabrics[g.panel_of_triangle[t]];
         const Eigen::Matrix<double, 3, 2> yarns = yarns_of(g, x, t);
         for (const bool warp : {false, true}) {
             const double limit = warp ? f.limit_warp : f.limit_weft;
             const double strain = yarns.col(warp ? 1 : 0).norm() - 1;
-            if (limit <= 0 || strain - limit <= most) continue;
-            most = strain - limit;
-            worst = {t, strain, limit, warp, 0};
+            if (limit > 0 && strain > limit) beyond.push_back({t, strain, limit, warp});
         }
     }
-    if (worst.triangle < 0) return worst;
-    // The section follows the direction of most stretch: round a sleeve, it is not level.
-    const Triangle n = g.nodes(worst.triangle);
-    const Eigen::Matrix<double, 3, 2> yarns = yarns_of(g, x, worst.triangle);
-    const Eigen::SelfAdjointEigenSolver<Mat2> principal(yarns.transpose() * yarns);
-    const Vec3 round = yarns * principal.eigenvectors().col(1), out = yarns.col(0).cross(yarns.col(1));
-    const Plane plane{(x[n[0]] + x[n[1]] + x[n[2]]) / 3, round.cross(out).normalized()};
-    const Excess excess = section_excess(g, g.edges, x, fabrics, worst.triangle, plane);
-    worst.missing = excess.sum > 0 ? excess.sum : excess.over;
+    if (beyond.empty()) return {};
+    std::sort(beyond.begin(), beyond.end(), [](const Tightness& a, const Tightness& b) {
+        return std::make_pair(b.strain - b.limit, a.triangle) < std::make_pair(a.strain - a.limit, b.triangle);
+    });
+    Tightness worst = beyond[0];
+    const std::size_t stride = (beyond.size() + most_sections - 1) / most_sections;
+    for (std::size_t k = 0; k < beyond.size(); k += stride) {
+        const int t = beyond[k].triangle;
+        const Excess excess = section_excess(g, g.edges, x, fabrics, t, along_most_stretch(g, x, t));
+        worst.missing = std::max(worst.missing, excess.sum);
+        worst.missing_in_part = std::max(worst.missing_in_part, excess.over);
+    }
     return worst;
 }
 

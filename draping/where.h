@@ -23,14 +23,16 @@ int widest_stitch(const Garment& garment, const Points& x);
 std::string open_seam(const Garment& garment, const Points& x, const std::vector<std::string>& seam_names,
                       const TriMesh& body, const std::vector<ContactPair>& touching);
 
-/// Where the cloth is stretched most beyond its fabric's limit, and by how much the connected section of the garment
-/// along the direction of most stretch there is longer than the limits of its cloth allow.
+/// Where the cloth is stretched most beyond its fabric's limit, and by how much connected sections of the garment
+/// along the direction of most stretch there are longer than the limits of their cloth allow, at most.
 struct Tightness {
     int triangle = -1;    ///< -1: nowhere beyond a limit
     double strain = 0;    ///< of the yarn that is worst there
     double limit = 0;
     bool warp = false;    ///< which yarn
-    double missing = 0;   ///< m, of that section
+    double missing = 0;   ///< m, of a section as a whole; 0 when cloth that is shorter makes up for what is missing elsewhere
+    double missing_in_part = 0; ///< m, of the parts of a section that are too long
+    double any_missing() const { return missing > 0 ? missing : missing_in_part; }
 };
 Tightness find_tightness(const Garment& garment, const Points& x, const PanelFabrics& fabrics);
 

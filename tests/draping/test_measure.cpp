@@ -310,3 +310,31 @@ TEST_CASE("what is missing round a sleeve is measured round it, however the arm 
         CHECK(t.missing == Approx(2 * EIGEN_PI * radius * (stretch - 1.03)).margin(1e-3));
     }
 }
+
+TEST_CASE("shear, which makes cloth longer aslant, is not missing") {
+    // A tube that is twisted: sections along the most stretch wind round it.
+    const double radius = 0.05, stretch = 1.031;
+    const Tube tube = tube_garment(radius, 0, 0.2, 40, 20);
+    Fabric fabric = fabric_preset("poplin");
+    fabric.limit_weft = fabric.limit_warp = 0.03;
+    Points x = tube.x;
+    for (Vec3& p : x) p = Eigen::AngleAxisd(5 * p.y(), Vec3::UnitY()) * Vec3(stretch * p.x(), p.y(), stretch * p.z());
+    const Tightness t = find_tightness(tube.garment, x, {fabric});
+    CHECK(t.missing > 0);
+    CHECK(t.missing < 2 * EIGEN_PI * radius * 0.005);
+}
+
+TEST_CASE("what is missing round a waist is that of the section that goes all round, though the worst triangle is at the edge") {
+    // Stretched by a tenth, and along half of its slanting upper edge by more.
+    const double radius = 0.1;
+    const Tube tube = tube_garment(radius, 0, 0.2, 60, 20);
+    Fabric fabric = fabric_preset("poplin");
+    fabric.limit_weft = 0.03;
+    Points x = tube.x;
+    for (Vec3& p : x) {
+        const double more = p.y() > 0.195 && p.x() > 0 ? 0.01 : 0;
+        p = Vec3((1.1 + more) * p.x(), p.y() + 0.3 * p.x() * p.y() / 0.2, (1.1 + more) * p.z());
+    }
+    const Tightness t = find_tightness(tube.garment, x, {fabric});
+    CHECK(t.missing > 2 * EIGEN_PI * radius * 0.06);
+}

@@ -170,25 +170,25 @@ void note_where(DrapeRun& run, const ClothProblem& problem, SettleEnd end, int w
 SettleResult settle_within_limits(DrapeRun& run, ClothProblem& problem, Cholesky& factor, const SettleOptions& o,
                                   SettleResult r) {
     const auto beyond = [&] { return r.end != SettleEnd::stopped && !problem.beyond_limits(run.x).empty(); };
-    double turn = hard_limit;
     SettleOptions some = o;
     some.max_iterations = harder_iterations;
-    while (beyond() && turn < hardest_limit) {
+    // Cloth at rest is not given up for limits under which it does not come to rest.
+    const auto settled_under = [&](double turn, double tighter) {
         const Points before = run.x;
-        const double harder = 1 - (1 - turn) / 3;
-        problem.limit_strain(harder);
-        const SettleResult h = run.settle_some(problem, run.x, factor, some);
-        if (h.end != SettleEnd::settled && h.end != SettleEnd::stopped && r.end == SettleEnd::settled) {
-            run.x = before;
-            break;
-        }
-        turn = harder;
-        r = h;
-    }
-    for (double tighter = least_tighter; beyond() && tighter < most_tighter; tighter *= 2) {
         problem.limit_strain(turn, tighter);
-        r = run.settle_some(problem, run.x, factor, o);
-    }
+        const SettleResult now = run.settle_some(problem, run.x, factor, some);
+        const bool kept = now.end == SettleEnd::settled || now.end == SettleEnd::stopped || r.end != SettleEnd::settled;
+        if (kept)
+            r = now;
+        else
+            run.x = before;
+        return kept;
+    };
+    double turn = hard_limit;
+    for (double harder = 0; beyond() && turn < hardest_limit; turn = harder)
+        if (!settled_under(harder = 1 - (1 - turn) / 3, 0)) break;
+    for (double tighter = least_tighter; beyond() && tighter < most_tighter; tighter *= 2)
+        if (!settled_under(turn, tighter)) break;
     return r;
 }
 

@@ -87,6 +87,16 @@ std::string decision(const nlohmann::json& report, const std::string& words) {
     return "";
 }
 
+/// small.json: the skirt of the examples, in poplin, made narrower by `share`.
+void write_narrow_skirt(const TempFolder& folder, double share) {
+    nlohmann::json pattern = nlohmann::json::parse(read_file(skirt, 1 << 20));
+    for (auto& panel : pattern["pattern"]["panels"])
+        for (auto& vertex : panel["vertices"])
+            vertex[0] = share * vertex[0].get<double>();
+    write_text(folder / "small.json", pattern.dump());
+    write_text(folder / "small.toile.json", R"({"toile": 1, "fabric": "poplin"})");
+}
+
 } // namespace
 
 TEST_CASE("a garment drapes in a fabric of one's own, and says what its method makes of the curves") {
@@ -220,16 +230,20 @@ TEST_CASE("hooks that are to be held stay on, by the file's label or by a plain 
 
 TEST_CASE("a skirt that is too small says so, where, and how much is missing") {
     const TempFolder folder;
-    nlohmann::json pattern = nlohmann::json::parse(read_file(skirt, 1 << 20));
-    for (auto& panel : pattern["pattern"]["panels"])
-        for (auto& vertex : panel["vertices"])
-            vertex[0] = 0.9 * vertex[0].get<double>();
-    write_text(folder / "small.json", pattern.dump());
-    write_text(folder / "small.toile.json", R"({"toile": 1, "fabric": "poplin"})");
+    write_narrow_skirt(folder, 0.9);
     const auto report = drape({folder / "small.json", "--edge-length", "60mm", "-o", folder / "a.obj"}, 3);
     CHECK(report["status"] == "too_small");
     CHECK_THAT(report["where"].get<std::string>(), Contains("panel \"") && Contains("cm are missing"));
     CHECK(read_garment(folder / "a.obj").x.size() == report["nodes"].get<std::size_t>());
+}
+
+TEST_CASE("a skirt that is a little too small comes to rest, beyond the limits of its fabric") {
+    const TempFolder folder;
+    write_narrow_skirt(folder, 0.98);
+    const auto report = drape({folder / "small.json", "--edge-length", "60mm"}, 3);
+    CHECK(report["status"] == "too_small");
+    CHECK(report["residual"] <= 1e-3);
+    CHECK(report["strain"]["weft"]["max"] > report["strain"]["weft"]["limit"]);
 }
 
 TEST_CASE("a seam that cannot close ends the drape with its name, its gap and what is in the way") {

@@ -16,7 +16,7 @@ namespace toile {
 
 namespace {
 
-constexpr std::size_t most_sections = 32; // of cloth that is too tight: those where it is so most may all leave it over an edge
+constexpr std::size_t most_sections = 256; // of cloth that is too tight: those where it is so most may all leave it over an edge
 
 std::string coordinates(const Vec3& p) {
     return text("(%.3f, %.3f, %.3f) m", p.x(), p.y(), p.z());

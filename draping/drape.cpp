@@ -243,7 +243,8 @@ DrapeResult drape_from_coarsest(const Staging& staging, const Avatar& avatar, co
 bool seams_closed(const DrapeResult& r) { return seam_gap_max(r.garment, r.state.positions) < weld_gap; }
 
 /// Whether triangles that were too coarse to be sewn, or to fold as the cloth has to, may have kept a drape from coming to
-/// rest. What is too small counts when a seam stayed open, or the body did not grow back: its cloth may have caught on what it would have passed.
+/// rest. What is too small counts when a seam stayed open, or the body did not grow back: its cloth may have caught on what it
+/// would have passed.
 bool coarsest_may_be_to_blame(const Staging& staging, const DrapeResult& r) {
     const bool sewn = r.levels[0].edge_length == staging.levels[0].edge_length; // and not taken up from an earlier drape
     return staging.levels.size() > 1 && sewn &&

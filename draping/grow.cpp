@@ -12,6 +12,12 @@ constexpr double grow_distance = 2e-3; // m, contact distance while the body gro
 constexpr double grow_share = 0.5; // of the way to the cloth that the body takes at once, lest it get stuck there
 constexpr double grow_gain = 0.03; // share of the way left that counts as nearer
 
+double farthest(const Points& a, const Points& b) {
+    double most = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, (a[i] - b[i]).norm());
+    return most;
+}
+
 } // namespace
 
 ContactOptions while_growing(const ContactOptions& at_rest) {
@@ -21,8 +27,8 @@ ContactOptions while_growing(const ContactOptions& at_rest) {
     return wide;
 }
 
-bool grow_body(ClothProblem& problem, const Points& full, const Points& x, int patience,
-               const std::function<bool(const SettleOptions&)>& settle) {
+double grow_body(ClothProblem& problem, const Points& full, const Points& x, int patience,
+                 const std::function<bool(const SettleOptions&)>& settle) {
     Contact& contact = problem.contact();
     SettleOptions o;
     o.tolerance = 1;
@@ -32,11 +38,8 @@ bool grow_body(ClothProblem& problem, const Points& full, const Points& x, int p
     double left = std::numeric_limits<double>::infinity(); // m
     for (int waited = 0; waited < patience; ++waited) {
         Points motion(full.size());
-        double longest = 0;
-        for (std::size_t v = 0; v < motion.size(); ++v) {
-            motion[v] = full[v] - contact.body()[v];
-            longest = std::max(longest, motion[v].norm());
-        }
+        for (std::size_t v = 0; v < motion.size(); ++v) motion[v] = full[v] - contact.body()[v];
+        const double longest = farthest(full, contact.body());
         if (longest < (1 - grow_gain) * left) {
             left = longest;
             waited = 0;
@@ -51,10 +54,9 @@ bool grow_body(ClothProblem& problem, const Points& full, const Points& x, int p
         for (std::size_t v = 0; v < motion.size(); ++v) next[v] = grown ? full[v] : Vec3(next[v] + t * motion[v]);
         contact.set_body(next);
         const bool goes_on = settle(o);
-        if (grown) return true;
-        if (!goes_on) return false;
+        if (grown || !goes_on) break;
     }
-    return false;
+    return farthest(full, contact.body());
 }
 
 } // namespace toile

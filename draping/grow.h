@@ -17,8 +17,8 @@ ContactOptions while_growing(const ContactOptions& at_rest);
 /// Moves the body of the problem's contact on straight lines from where it is to `full` (as many points), in rounds of
 /// a step that leaves nothing crossed and some iterations of the cloth: `settle` makes these on x with the options that
 /// it is given, and returns whether to go on. Ends early when in `patience` rounds the body has come no nearer.
-/// Returns whether it got there.
-bool grow_body(ClothProblem& problem, const Points& full, const Points& x, int patience,
-               const std::function<bool(const SettleOptions&)>& settle);
+/// Returns how far its farthest point is from there, m; 0: it got there.
+double grow_body(ClothProblem& problem, const Points& full, const Points& x, int patience,
+                 const std::function<bool(const SettleOptions&)>& settle);
 
 } // namespace toile

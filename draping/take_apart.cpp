@@ -41,16 +41,12 @@ void clear_of_body(DrapeRun& run, ClothProblem& problem, Cholesky& factor) {
     double& deepest = run.facts.drawn_in[run.edge_length()];
     deepest = std::max(deepest, depth);
     run.begin("grow", 0);
-    run.result.drawn_in = depth;
-    if (depth > 0) {
-        grow_body(problem, run.body.points, run.x, grow_patience, [&](const SettleOptions& o) {
+    run.result.drawn_in = 0;
+    if (depth > 0)
+        run.result.drawn_in = grow_body(problem, run.body.points, run.x, grow_patience, [&](const SettleOptions& o) {
             run.settle_some(problem, run.x, factor, o);
             return !run.stopped;
         });
-        run.result.drawn_in = 0;
-        for (std::size_t v = 0; v < drawn.points.size(); ++v)
-            run.result.drawn_in = std::max(run.result.drawn_in, (run.body.points[v] - problem.contact().body()[v]).norm());
-    }
     problem.contact().set_options(final);
 }
 

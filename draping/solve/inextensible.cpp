@@ -13,7 +13,7 @@ namespace {
 constexpr double hold_share = 100; // of a node's mass, with which a touch holds it against the yarns
 
 constexpr double line_share = 1e3; // of the mass that it moves, over dt2, with which a line is stiff in the solve
-constexpr double beside_own = 5;    // times what else its ends are stiff by, added to that
+constexpr double beside_own = 5;   // times what else its ends are stiff by, added to that
 
 } // namespace
 

@@ -49,6 +49,7 @@ struct DrapeFacts {
     double still_drawn_in = 0;       ///< m, DrapeResult::drawn_in
     std::vector<double> edge_lengths; ///< m, per level
     int untangled = 0;               ///< crossings of edges and triangles of cloth that were taken apart
+    int held_as_it_lay = 0;          ///< times that friction took up what was left near rest, since it went in circles
     int untangled_as_mesh = 0;       ///< levels on which the rest was taken apart as a mesh
     int pins = 0;                    ///< nodes held
     int band_segments = 0;           ///< of elastics

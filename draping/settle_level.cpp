@@ -39,6 +39,9 @@ constexpr int tight_every = 100;               // iterations after which cloth i
 constexpr double too_tight = 0.005;            // m, missing round the garment,
 constexpr int long_tight = 500;                // and `tight` after so many iterations, of which
 constexpr double tight_gain = 0.1;             // this share has to have gone since, for it to go on
+constexpr double near_rest = 0.1;              // residual from which cloth goes in circles when it has not become half as near
+constexpr int circle = 200;                    // to rest in so many iterations
+constexpr int most_circles = 5;
 constexpr double coarse_motion_residual = 0.3; // less than the 1 of free fall
 
 /// Takes the cloth apart without regard to its pattern: the body gives way meanwhile, and parts go back as a whole.
@@ -93,6 +96,22 @@ struct TightWatch {
         missing = find_tightness(run.garment, run.x, run.fabrics).any_missing();
         const double much = iteration < long_tight ? too_tight : tight;
         return run.result.drawn_in > 0 || (missing > much && missing > (1 - tight_gain) * last);
+    }
+};
+
+/// Tells when cloth near rest gets no nearer to it, since normal forces and friction chase one another.
+struct RestWatch {
+    double nearest = std::numeric_limits<double>::infinity();
+    int since = 0; ///< the iteration that was so near first
+    bool in_circles = false;
+
+    bool gives_up(int iteration, double residual) {
+        if (iteration == 0 || residual < 0.5 * nearest) {
+            nearest = residual;
+            since = iteration;
+        }
+        in_circles = nearest < near_rest && iteration - since >= circle;
+        return in_circles;
     }
 };
 
@@ -290,8 +309,18 @@ void settle_level(DrapeRun& run) {
             untangle();
         }
         if (tangled && last_pass && !run.stopped && untangle_as_mesh(run)) untangle();
-        if (last_pass) o.progress = [&tight](int i, double) { return !tight.gives_up(i); };
-        const auto some = [&](const SettleOptions& how) { return run.settle_some(problem, run.x, factor, how); };
+        RestWatch watch;
+        if (last_pass) o.progress = [&](int i, double residual) { return !watch.gives_up(i, residual) && !tight.gives_up(i); };
+        const auto some = [&](const SettleOptions& how) {
+            SettleResult now = run.settle_some(problem, run.x, factor, how);
+            // Held as it lies, with what friction can bear, it is at rest or soon comes to it.
+            for (int k = 0; k < most_circles && watch.in_circles && !run.stopped; ++k) {
+                problem.rest_here(run.x, run.result.friction, true);
+                ++run.facts.held_as_it_lay;
+                now = run.settle_some(problem, run.x, factor, how);
+            }
+            return now;
+        };
         if (pass.slides) {
             o.tolerance = sliding_residual;
             for (int k = 0; k < most_slides && !run.stopped; ++k) {

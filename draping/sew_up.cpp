@@ -3,10 +3,14 @@
 
 #include "draping/hooks.h"
 #include "draping/pull_shut.h"
+#include "draping/rings.h"
 #include "draping/take_apart.h"
+#include "draping/wrap.h"
 #include "geometry/text.h"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <tuple>
 
 namespace toile {
@@ -14,7 +18,6 @@ namespace toile {
 namespace {
 
 constexpr int heights_tried = 4; // for seams that close first, up or down to where their threads are free
-constexpr double slipped = 0.02; // m, down while it is sewn
 
 /// Closes the stitches that are as good as closed and leaves the others open.
 void close_what_is_closed(DrapeRun& run, const Garment& open, const Points& x) {
@@ -63,6 +66,58 @@ Start place(const DrapeRun& run, double lift, const std::vector<bool>& outside =
     return {lift, place_clear(run.staging.levels[0].garment, lifted, run.body, o)};
 }
 
+/// By panel, the skirts of a start that lie flat with the arms between their sides, unless they are pinned.
+std::vector<bool> skirt_to_wrap(const DrapeRun& run, const Points& x) {
+    double armpit = 0;
+    try {
+        armpit = measure_body(run.avatar).armpit_y;
+    } catch (const std::invalid_argument&) { // no figure
+        return {};
+    }
+    std::vector<bool> skirt = skirt_round_arms(run.staging.levels[0].garment, x, run.body, armpit);
+    const std::vector<bool> pinned = pinned_panels(run);
+    bool any = false;
+    for (std::size_t p = 0; p < skirt.size(); ++p) {
+        if (skirt[p] && pinned[p]) return {};
+        any = any || skirt[p];
+    }
+    return any ? skirt : std::vector<bool>{};
+}
+
+/// The start with such skirts laid round the body, or as it is where that is not possible.
+Start place_round(const DrapeRun& run, double lift) {
+    Start flat = place(run, lift);
+    const std::vector<bool> skirt = skirt_to_wrap(run, flat.placed.x);
+    if (skirt.empty()) return flat;
+    Start round = place(run, lift, skirt);
+    std::optional<Points> laid = wrap_round(run.staging.levels[0].garment, round.placed.x, run.body, skirt);
+    if (!laid) return flat;
+    round.placed.x = std::move(*laid);
+    std::erase_if(round.placed.pushed, [&](const PanelPush& p) { return skirt[p.panel]; });
+    round.wrapped = skirt;
+    return round;
+}
+
+/// By seam, those that stay open with the body between their sides; empty when none does, or every one.
+std::vector<char> stuck_seams(const DrapeRun& run, const Points& x) {
+    const Garment& open = run.staging.levels[0].garment;
+    const std::vector<char> through = seams_through_body(open, x, run.body);
+    std::vector<char> stuck(through.size(), 0);
+    for (const Stitch& s : open.stitches)
+        if (through[s.seam] && stitch_gap(s, x) > forced_share * run.edge_length()) stuck[s.seam] = 1;
+    const auto count = std::count(stuck.begin(), stuck.end(), 1);
+    return count == 0 || count == std::ptrdiff_t(stuck.size()) ? std::vector<char>{} : stuck;
+}
+
+void note_wrapped(DrapeRun& run, const std::vector<bool>& wrapped) {
+    std::string names;
+    for (std::size_t p = 0; p < wrapped.size(); ++p)
+        if (wrapped[p]) names += (names.empty() ? "\"" : ", \"") + run.staging.levels[0].garment.panel_names[p] + "\"";
+    if (!names.empty())
+        run.result.decisions.push_back("panels " + names + " were laid round the body in pleats before sewing: where the file puts them the body "
+                                       "is between their sides");
+}
+
 } // namespace
 
 void lay(DrapeRun& run) {
@@ -95,32 +150,23 @@ void sew_coarsest(DrapeRun& run) {
         if (sewn.x.empty() || badness(next) < badness(sewn)) sewn = std::move(next);
         return run.stopped || (!sewn.open && sewn.crossings == 0);
     };
-    const Start as_filed = place(run, 0);
-    bool done = closes(as_filed, {.self = true});
+    const Start as_filed = place_round(run, 0);
+    bool done = closes(as_filed, {.self = true}) || (!as_filed.wrapped.empty() && !sewn.open && comes_apart(run, sewn));
     done = done || closes(as_filed, {.self = false});
-    const Waiting waiting =
-        done || !sewn.open ? Waiting()
-                           : what_waits(staged.garment, sewn.x, run.body, forced_share * run.edge_length());
-    if (!done && sewn.open && run.staging.pins.empty())
-        if (const double lift = free_height(staged.garment, run.laid.x, run.body); lift != 0) {
-            const Start lifted = place(run, lift);
+    const std::vector<char> stuck = done || !sewn.open ? std::vector<char>{} : stuck_seams(run, sewn.x);
+    if (!done && sewn.open && run.staging.pins.empty()) {
+        const Points& threads = as_filed.wrapped.empty() ? run.laid.x : as_filed.placed.x;
+        if (const double lift = free_height(staged.garment, threads, run.body); lift != 0) {
+            const Start lifted = place_round(run, lift);
             done = closes(lifted, {.self = true}) || closes(lifted, {.self = false});
         }
+    }
     if (!done && sewn.open && !all_hooked(run).empty()) // hooks may hold a bodice lower than its shoulders reach
         done = closes(as_filed, {.self = true, .hooks = false}) || closes(as_filed, {.self = false, .hooks = false});
-    if (!done && sewn.open && !waiting.seams.empty()) // a waist that closes first may draw a crotch up to where it cannot close
+    if (!done && sewn.open && !stuck.empty()) // a waist that closes first may draw a crotch up to where it cannot close
         if (const auto free = height_free_for(staged.garment, run.laid.x, run.body, stitches_through_body(staged.garment, sewn.x, run.body)))
             for (int k = 0; k <= (run.staging.pins.empty() ? heights_tried : 0) && !done && sewn.open; ++k)
-                done = closes(place(run, *free * k / heights_tried), {.first = waiting.seams});
-    if (!done && sewn.open && !waiting.seams.empty()) {
-        const Start hung = place(run, 0, waiting.outside);
-        if (!closes(hung, {.waiting = waiting}) && (sewn.open || !comes_apart(run, sewn))) {
-            const Sewn quick = sewn;
-            closes(hung, {.waiting = waiting, .careful = true});
-            // What little holds may slide down while it is sewn for long; of what is held the rings alone hang lower.
-            if (sewn.way.careful && !quick.open && top_height(sewn.x) < top_height(quick.x) - slipped) sewn = quick;
-        }
-    }
+                done = closes(place(run, *free * k / heights_tried), {.first = stuck});
     run.x = merge(run.garment, run.joined, sewn.x);
     if (sewn.start.lift != 0)
         run.result.decisions.push_back(
@@ -128,21 +174,17 @@ void sew_coarsest(DrapeRun& run) {
                  "their sides",
                  sewn.start.lift > 0 ? "up" : "down", 1e3 * std::abs(sewn.start.lift)));
     note_pushes(run, sewn.start.placed);
+    note_wrapped(run, sewn.start.wrapped);
     run.open = sewn.open;
     if (run.open) { // joined by force it would cut itself or the body
         run.result.status = sewn.status;
         run.result.where = sewn.where;
         close_what_is_closed(run, staged.garment, sewn.x);
     } else if (!run.stopped) {
-        if (!sewn.way.waiting.seams.empty())
-            run.result.decisions.push_back("seams with the body in their way were sewn when the others were closed "
-                                           "and the cloth hung down: all at once could not close");
         if (!sewn.way.first.empty())
             run.result.decisions.push_back("seams that had the body between their sides when all were drawn shut at once were sewn first, and the others after them");
         if (!sewn.way.hooks)
             run.result.decisions.push_back("carrying edges were not held at their height while seams closed: held there a seam stayed open");
-        if (sewn.way.careful)
-            run.result.decisions.push_back("they were sewn stitch by stitch: more at a time pinched folds between their sides");
         if (!sewn.way.self && sewn.crossings == 0)
             run.result.decisions.push_back("cloth passed through itself while seams closed: with contact "
                                            "between panels a seam could not close; the sewn garment does "

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "draping/rings.h"
+
+#include "tests/support/sewn_squares.h"
+#include "tests/support/shapes.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cstdlib>
+
+using namespace toile;
+using namespace toile::test;
+
+namespace {
+
+enum Seam { bodice_left, bodice_right, front_waist, back_waist, skirt_left, skirt_right, front_hem, back_hem, flounce_left, flounce_right };
+
+/// Front and back of a bodice, of a skirt below it and of a flounce below that.
+Cloth dress() {
+    Cloth c;
+    for (const double y : {0.2, 0.0, -0.2}) {
+        add_front(c, {0, y, 0.1});
+        add_back(c, {0, y, -0.1});
+    }
+    const auto sew_next = [&](std::vector<Seam> in_turn, auto&& sew) {
+        const std::size_t before = c.garment.stitches.size();
+        sew();
+        for (std::size_t k = before; k < c.garment.stitches.size(); ++k)
+            c.garment.stitches[k].seam = in_turn[(k - before) % in_turn.size()];
+    };
+    sew_next({bodice_left, bodice_right}, [&] { sew_sides(c, 0, 1); });
+    sew_next({front_waist}, [&] { sew_below(c, 0, 2); });
+    sew_next({back_waist}, [&] { sew_below(c, 1, 3); });
+    sew_next({skirt_left, skirt_right}, [&] { sew_sides(c, 2, 3); });
+    sew_next({front_hem}, [&] { sew_below(c, 2, 4); });
+    sew_next({back_hem}, [&] { sew_below(c, 3, 5); });
+    sew_next({flounce_left, flounce_right}, [&] { sew_sides(c, 4, 5); });
+    return c;
+}
+
+/// A body with arms that reach between the sides of the dress's skirt.
+TriMesh body_with_hands() {
+    TriMesh body = box({-0.05, -0.5, -0.05}, {0.05, 0.5, 0.05});
+    const TriMesh hands = box({-0.3, -0.02, -0.03}, {0.3, 0.02, 0.03});
+    const int first = int(body.points.size());
+    body.points.insert(body.points.end(), hands.points.begin(), hands.points.end());
+    for (const Triangle& t : hands.triangles) body.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    return body;
+}
+
+constexpr double armpit = 0.25;
+
+} // namespace
+
+TEST_CASE("a front and a back go round: their sides have one turn between them, whatever the axis is called zero") {
+    Cloth c;
+    add_front(c, {0, 0, 0.1});
+    add_back(c, {0, 0, -0.1});
+    sew_sides(c, 0, 1);
+    for (std::size_t k = 0; k < c.garment.stitches.size(); ++k) c.garment.stitches[k].seam = int(k % 2); // a side each
+    const std::vector<int> turns = turns_at_seams(c.garment, c.x, Vec3::Zero());
+    REQUIRE(turns.size() == 2);
+    CHECK(std::abs(turns[0] - turns[1]) == 1);
+    const std::vector<int> beside = turns_at_seams(c.garment, c.x, Vec3(1, 0, 0)); // the axis is not between the panels
+    CHECK(beside[0] == beside[1]);
+}
+
+TEST_CASE("the middle of a panel is that of its area") {
+    Cloth c;
+    add_front(c, {0.3, 0.1, 0.2});
+    add_back(c, {0, -1, 0});
+    const std::vector<Vec3> middles = panel_middles(c.garment, c.x);
+    CHECK((middles[0] - Vec3(0.3, 0.1, 0.2)).norm() < 1e-12);
+    CHECK((middles[1] - Vec3(0, -1, 0)).norm() < 1e-12);
+}
+
+TEST_CASE("a skirt with the hands between its sides is told, with what hangs from it, and not the bodice above it") {
+    const Cloth c = dress();
+    const std::vector<bool> skirt = skirt_round_arms(c.garment, c.x, body_with_hands(), armpit);
+    CHECK(skirt == std::vector<bool>{false, false, true, true, true, true});
+}
+
+TEST_CASE("there is no skirt to be told where nothing is in the way, nothing is above it, or it hangs from above the armpits") {
+    const auto none = [](const std::vector<bool>& marked) { return std::count(marked.begin(), marked.end(), true) == 0; };
+    const Cloth c = dress();
+    CHECK(none(skirt_round_arms(c.garment, c.x, box({-0.05, -0.5, -0.05}, {0.05, 0.5, 0.05}), armpit)));
+    CHECK(none(skirt_round_arms(c.garment, c.x, body_with_hands(), 0.05)));
+    Cloth tube;
+    add_front(tube, {0, 0, 0.1});
+    add_back(tube, {0, 0, -0.1});
+    sew_sides(tube, 0, 1);
+    CHECK(none(skirt_round_arms(tube.garment, tube.x, body_with_hands(), armpit)));
+}

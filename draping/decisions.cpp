@@ -198,8 +198,8 @@ std::vector<std::string> decisions(const DrapeFacts& f, const Garment& g, const 
         out.push_back(text("where cloth crossed itself after sewing or on a finer mesh, it was taken apart before contact "
                            "took over: at most %d crossings on a level", f.untangled));
     if (f.held_as_it_lay > 0)
-        out.push_back(text("friction took up what forces were left, as far as it can bear them, %d times near rest, where it and contact chased one another",
-                           f.held_as_it_lay));
+        out.push_back(text("near rest, where it and contact chased one another, friction took up what forces were left %s, as far as "
+                           "it can bear them", f.held_as_it_lay == 1 ? "once" : text("%d times", f.held_as_it_lay).c_str()));
     if (f.untangled_as_mesh > 0)
         out.push_back(text("cloth that stayed tangled while it settled was taken apart without regard to its pattern on %d "
                            "of the levels, and settled again",

@@ -2,7 +2,6 @@
 #include "draping/rings.h"
 
 #include "draping/pieces.h"
-#include "draping/place.h"
 #include "geometry/bvh.h"
 #include "geometry/disjoint_sets.h"
 
@@ -84,7 +83,8 @@ std::vector<int> turns_at_seams(const Garment& garment, const Points& x, const V
     return turns;
 }
 
-std::vector<bool> skirt_round_arms(const Garment& garment, const Points& x, const TriMesh& body, double armpit) {
+std::vector<bool> skirt_round_arms(const Garment& garment, const Points& x, const TriMesh& body, const std::vector<char>& split,
+                                   double armpit) {
     const int panels = int(garment.panel_names.size());
     const Vec3 axis = Bvh(point_boxes(body.points, 0)).bounds().center();
     const std::vector<Vec3> middles = panel_middles(garment, x);
@@ -94,19 +94,18 @@ std::vector<bool> skirt_round_arms(const Garment& garment, const Points& x, cons
     const std::vector<int> ring = joined.all();
     const auto below = [&](int p, int q) { return ring[p] != ring[q] && middles[p].y() < middles[q].y(); };
 
-    const std::vector<char> through = seams_through_body(garment, x, body);
     const std::vector<bool> goes_round = rings_that_go_round(garment, ring, turns_at_seams(garment, x, axis));
-    std::vector<bool> split(panels, false), hangs(panels, false), high(panels, false); // by ring
+    std::vector<bool> blocked(panels, false), hangs(panels, false), high(panels, false); // by ring
     for (const Stitch& s : garment.stitches) {
         const auto [p, q] = panels_of(garment, s);
-        if (ring[p] == ring[q] && through[s.seam]) split[ring[p]] = true;
+        if (ring[p] == ring[q] && split[s.seam]) blocked[ring[p]] = true;
         if (!below(p, q) && !below(q, p)) continue;
         const int lower = ring[below(p, q) ? p : q];
         hangs[lower] = true;
         if (seam_point(s, x).y() > armpit) high[lower] = true;
     }
     std::vector<bool> round(panels, false);
-    for (int p = 0; p < panels; ++p) round[p] = goes_round[ring[p]] && split[ring[p]] && hangs[ring[p]] && !high[ring[p]];
+    for (int p = 0; p < panels; ++p) round[p] = goes_round[ring[p]] && blocked[ring[p]] && hangs[ring[p]] && !high[ring[p]];
     for (bool more = true; more;) {
         more = false;
         for (const Stitch& s : garment.stitches) {

@@ -19,9 +19,10 @@ std::vector<Vec3> panel_middles(const Garment& garment, const Points& x);
 /// 2 pi times that larger on the side of `a`.
 std::vector<int> turns_at_seams(const Garment& garment, const Points& x, const Vec3& axis);
 
-/// By panel, what of an open garment hangs round the body as a skirt but lies with the body (arms and hands) between the sides of
-/// its seams: rings of panels beside each other that go round the body and are sewn to something above them, below the armpits (m, their
-/// height), with all that hangs from them. All false when there are none.
-std::vector<bool> skirt_round_arms(const Garment& garment, const Points& x, const TriMesh& body, double armpit);
+/// By panel, what of an open garment hangs round the body as a skirt but has the body (arms and hands) between the sides of
+/// some of its seams (`split`, by seam): rings of panels beside each other that go round the body and are sewn to something above them, below
+/// the armpits (m, their height), with all that hangs from them. All false when there are none.
+std::vector<bool> skirt_round_arms(const Garment& garment, const Points& x, const TriMesh& body, const std::vector<char>& split,
+                                   double armpit);
 
 } // namespace toile

@@ -66,15 +66,15 @@ Start place(const DrapeRun& run, double lift, const std::vector<bool>& outside =
     return {lift, place_clear(run.staging.levels[0].garment, lifted, run.body, o)};
 }
 
-/// By panel, the skirts of a start that lie flat with the arms between their sides, unless they are pinned.
-std::vector<bool> skirt_to_wrap(const DrapeRun& run, const Points& x) {
+/// By panel, the skirts at x with the body between the sides of some of these seams, unless they are pinned.
+std::vector<bool> skirt_to_wrap(const DrapeRun& run, const Points& x, const std::vector<char>& split) {
     double armpit = 0;
     try {
         armpit = measure_body(run.avatar).armpit_y;
     } catch (const std::invalid_argument&) { // no figure
         return {};
     }
-    std::vector<bool> skirt = skirt_round_arms(run.staging.levels[0].garment, x, run.body, armpit);
+    std::vector<bool> skirt = skirt_round_arms(run.staging.levels[0].garment, x, run.body, split, armpit);
     const std::vector<bool> pinned = pinned_panels(run);
     bool any = false;
     for (std::size_t p = 0; p < skirt.size(); ++p) {
@@ -84,13 +84,16 @@ std::vector<bool> skirt_to_wrap(const DrapeRun& run, const Points& x) {
     return any ? skirt : std::vector<bool>{};
 }
 
-/// The start with such skirts laid round the body, or as it is where that is not possible.
-Start place_round(const DrapeRun& run, double lift) {
+/// The start with skirts laid round the body that have it between the sides of some of these seams (empty: of those that have it
+/// there from the start), or as it is where there are none or that is not possible.
+Start place_round(const DrapeRun& run, double lift, const std::vector<char>& split = {}) {
+    const Garment& open = run.staging.levels[0].garment;
     Start flat = place(run, lift);
-    const std::vector<bool> skirt = skirt_to_wrap(run, flat.placed.x);
+    const std::vector<bool> skirt =
+        skirt_to_wrap(run, flat.placed.x, split.empty() ? seams_through_body(open, flat.placed.x, run.body) : split);
     if (skirt.empty()) return flat;
     Start round = place(run, lift, skirt);
-    std::optional<Points> laid = wrap_round(run.staging.levels[0].garment, round.placed.x, run.body, skirt);
+    std::optional<Points> laid = wrap_round(open, round.placed.x, run.body, skirt);
     if (!laid) return flat;
     round.placed.x = std::move(*laid);
     std::erase_if(round.placed.pushed, [&](const PanelPush& p) { return skirt[p.panel]; });
@@ -154,6 +157,10 @@ void sew_coarsest(DrapeRun& run) {
     bool done = closes(as_filed, {.self = true}) || (!as_filed.wrapped.empty() && !sewn.open && comes_apart(run, sewn));
     done = done || closes(as_filed, {.self = false});
     const std::vector<char> stuck = done || !sewn.open ? std::vector<char>{} : stuck_seams(run, sewn.x);
+    if (!stuck.empty() && as_filed.wrapped.empty()) {
+        const Start wrapped = place_round(run, 0, stuck);
+        done = !wrapped.wrapped.empty() && closes(wrapped, {.self = true});
+    }
     if (!done && sewn.open && run.staging.pins.empty()) {
         const Points& threads = as_filed.wrapped.empty() ? run.laid.x : as_filed.placed.x;
         if (const double lift = free_height(staged.garment, threads, run.body); lift != 0) {

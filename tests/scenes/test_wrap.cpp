@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/wrap.h"
 
+#include "draping/place.h"
 #include "draping/pull_shut.h"
 #include "draping/rings.h"
 #include "draping/staging.h"
@@ -34,7 +35,7 @@ OpenSkirt open_skirt(const nlohmann::json& file) {
     options.levels = 1;
     const Staging staging = stage(pattern, triangulate(pattern, options));
     OpenSkirt s{staging.levels[0].garment, staging.levels[0].placed, make_form({}), {}};
-    s.skirt = skirt_round_arms(s.garment, s.x, s.body, measure_body(s.body).armpit_y);
+    s.skirt = skirt_round_arms(s.garment, s.x, s.body, seams_through_body(s.garment, s.x, s.body), measure_body(s.body).armpit_y);
     return s;
 }
 

@@ -6,6 +6,7 @@
 
 #include "draping/drape_run.h"
 #include "draping/place.h"
+#include "draping/wait.h"
 
 namespace toile {
 
@@ -24,6 +25,8 @@ struct Sewing {
     bool self = true; ///< with contact between panels
     bool hooks = true; ///< carrying edges are held at their height; never where the garment was moved up or down
     std::vector<char> first = {}; ///< by seam: these close before the others; empty: all at once
+    Waiting waiting = {};  ///< until the other seams are closed and the cloth hangs, and are then
+    bool careful = false;  ///< sewn one stitch at a time
 };
 
 struct Sewn {
@@ -37,7 +40,8 @@ struct Sewn {
     std::string where = {};  ///< what keeps it so
 };
 
-/// Pulls all seams of the open garment shut. The gaps that stay are in the result, not an error.
+/// Pulls all seams of the open garment shut: those that do not wait, then, by the weight of what hangs from
+/// them and stitch by stitch, those that do. The gaps that stay are in the result, not an error.
 Sewn pull_shut(DrapeRun& run, const Start& start, const Sewing& way);
 
 /// Merges the nodes of closed seams: `map` has the node of `closed` for every one of x. Every group of nodes

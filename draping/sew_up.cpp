@@ -18,6 +18,7 @@ namespace toile {
 namespace {
 
 constexpr int heights_tried = 4; // for seams that close first, up or down to where their threads are free
+constexpr double slipped = 0.02; // m, down while it is sewn
 
 /// Closes the stitches that are as good as closed and leaves the others open.
 void close_what_is_closed(DrapeRun& run, const Garment& open, const Points& x) {
@@ -101,17 +102,6 @@ Start place_round(const DrapeRun& run, double lift, const std::vector<char>& spl
     return round;
 }
 
-/// By seam, those that stay open with the body between their sides; empty when none does, or every one.
-std::vector<char> stuck_seams(const DrapeRun& run, const Points& x) {
-    const Garment& open = run.staging.levels[0].garment;
-    const std::vector<char> through = seams_through_body(open, x, run.body);
-    std::vector<char> stuck(through.size(), 0);
-    for (const Stitch& s : open.stitches)
-        if (through[s.seam] && stitch_gap(s, x) > forced_share * run.edge_length()) stuck[s.seam] = 1;
-    const auto count = std::count(stuck.begin(), stuck.end(), 1);
-    return count == 0 || count == std::ptrdiff_t(stuck.size()) ? std::vector<char>{} : stuck;
-}
-
 void note_wrapped(DrapeRun& run, const std::vector<bool>& wrapped) {
     std::string names;
     for (std::size_t p = 0; p < wrapped.size(); ++p)
@@ -156,9 +146,11 @@ void sew_coarsest(DrapeRun& run) {
     const Start as_filed = place_round(run, 0);
     bool done = closes(as_filed, {.self = true}) || (!as_filed.wrapped.empty() && !sewn.open && comes_apart(run, sewn));
     done = done || closes(as_filed, {.self = false});
-    const std::vector<char> stuck = done || !sewn.open ? std::vector<char>{} : stuck_seams(run, sewn.x);
-    if (!stuck.empty() && as_filed.wrapped.empty()) {
-        const Start wrapped = place_round(run, 0, stuck);
+    const Waiting waiting =
+        done || !sewn.open ? Waiting()
+                           : what_waits(staged.garment, sewn.x, run.body, forced_share * run.edge_length());
+    if (!waiting.seams.empty() && as_filed.wrapped.empty()) {
+        const Start wrapped = place_round(run, 0, waiting.seams);
         done = !wrapped.wrapped.empty() && closes(wrapped, {.self = true});
     }
     if (!done && sewn.open && run.staging.pins.empty()) {
@@ -170,10 +162,19 @@ void sew_coarsest(DrapeRun& run) {
     }
     if (!done && sewn.open && !all_hooked(run).empty()) // hooks may hold a bodice lower than its shoulders reach
         done = closes(as_filed, {.self = true, .hooks = false}) || closes(as_filed, {.self = false, .hooks = false});
-    if (!done && sewn.open && !stuck.empty()) // a waist that closes first may draw a crotch up to where it cannot close
+    if (!done && sewn.open && !waiting.seams.empty()) // a waist that closes first may draw a crotch up to where it cannot close
         if (const auto free = height_free_for(staged.garment, run.laid.x, run.body, stitches_through_body(staged.garment, sewn.x, run.body)))
             for (int k = 0; k <= (run.staging.pins.empty() ? heights_tried : 0) && !done && sewn.open; ++k)
-                done = closes(place(run, *free * k / heights_tried), {.first = stuck});
+                done = closes(place(run, *free * k / heights_tried), {.first = waiting.seams});
+    if (!done && sewn.open && !waiting.seams.empty()) {
+        const Start hung = place(run, 0, waiting.outside);
+        if (!closes(hung, {.waiting = waiting}) && (sewn.open || !comes_apart(run, sewn))) {
+            const Sewn quick = sewn;
+            closes(hung, {.waiting = waiting, .careful = true});
+            // What little holds may slide down while it is sewn for long; of what is held the rings alone hang lower.
+            if (sewn.way.careful && !quick.open && top_height(sewn.x) < top_height(quick.x) - slipped) sewn = quick;
+        }
+    }
     run.x = merge(run.garment, run.joined, sewn.x);
     if (sewn.start.lift != 0)
         run.result.decisions.push_back(
@@ -188,10 +189,15 @@ void sew_coarsest(DrapeRun& run) {
         run.result.where = sewn.where;
         close_what_is_closed(run, staged.garment, sewn.x);
     } else if (!run.stopped) {
+        if (!sewn.way.waiting.seams.empty())
+            run.result.decisions.push_back("seams with the body in their way were sewn when the others were closed "
+                                           "and the cloth hung down: all at once could not close");
         if (!sewn.way.first.empty())
             run.result.decisions.push_back("seams that had the body between their sides when all were drawn shut at once were sewn first, and the others after them");
         if (!sewn.way.hooks)
             run.result.decisions.push_back("carrying edges were not held at their height while seams closed: held there a seam stayed open");
+        if (sewn.way.careful)
+            run.result.decisions.push_back("they were sewn stitch by stitch: more at a time pinched folds between their sides");
         if (!sewn.way.self && sewn.crossings == 0)
             run.result.decisions.push_back("cloth passed through itself while seams closed: with contact "
                                            "between panels a seam could not close; the sewn garment does "

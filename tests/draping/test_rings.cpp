@@ -2,7 +2,7 @@
 #include "draping/rings.h"
 
 #include "draping/place.h"
-#include "tests/support/sewn_squares.h"
+#include "tests/support/dress.h"
 #include "tests/support/shapes.h"
 
 #include <catch2/catch.hpp>
@@ -14,31 +14,6 @@ using namespace toile;
 using namespace toile::test;
 
 namespace {
-
-enum Seam { bodice_left, bodice_right, front_waist, back_waist, skirt_left, skirt_right, front_hem, back_hem, flounce_left, flounce_right };
-
-/// Front and back of a bodice, of a skirt below it and of a flounce below that.
-Cloth dress() {
-    Cloth c;
-    for (const double y : {0.2, 0.0, -0.2}) {
-        add_front(c, {0, y, 0.1});
-        add_back(c, {0, y, -0.1});
-    }
-    const auto sew_next = [&](std::vector<Seam> in_turn, auto&& sew) {
-        const std::size_t before = c.garment.stitches.size();
-        sew();
-        for (std::size_t k = before; k < c.garment.stitches.size(); ++k)
-            c.garment.stitches[k].seam = in_turn[(k - before) % in_turn.size()];
-    };
-    sew_next({bodice_left, bodice_right}, [&] { sew_sides(c, 0, 1); });
-    sew_next({front_waist}, [&] { sew_below(c, 0, 2); });
-    sew_next({back_waist}, [&] { sew_below(c, 1, 3); });
-    sew_next({skirt_left, skirt_right}, [&] { sew_sides(c, 2, 3); });
-    sew_next({front_hem}, [&] { sew_below(c, 2, 4); });
-    sew_next({back_hem}, [&] { sew_below(c, 3, 5); });
-    sew_next({flounce_left, flounce_right}, [&] { sew_sides(c, 4, 5); });
-    return c;
-}
 
 /// A body with arms that reach between the sides of the dress's skirt.
 TriMesh body_with_hands() {
@@ -79,13 +54,13 @@ TEST_CASE("the middle of a panel is that of its area") {
 }
 
 TEST_CASE("a skirt with the hands between its sides is told, with what hangs from it, and not the bodice above it") {
-    const Cloth c = dress();
+    const Cloth c = dress(true);
     CHECK(skirt(c, body_with_hands()) == std::vector<bool>{false, false, true, true, true, true});
 }
 
 TEST_CASE("there is no skirt to be told where nothing is in the way, nothing is above it, or it hangs from above the armpits") {
     const auto none = [](const std::vector<bool>& marked) { return std::count(marked.begin(), marked.end(), true) == 0; };
-    const Cloth c = dress();
+    const Cloth c = dress(true);
     CHECK(none(skirt(c, box({-0.05, -0.5, -0.05}, {0.05, 0.5, 0.05}))));
     CHECK(none(skirt(c, body_with_hands(), 0.05)));
     Cloth tube;

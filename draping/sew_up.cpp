@@ -107,8 +107,8 @@ void note_wrapped(DrapeRun& run, const std::vector<bool>& wrapped) {
     for (std::size_t p = 0; p < wrapped.size(); ++p)
         if (wrapped[p]) names += (names.empty() ? "\"" : ", \"") + run.staging.levels[0].garment.panel_names[p] + "\"";
     if (!names.empty())
-        run.result.decisions.push_back("panels " + names + " were laid round the body in pleats before sewing: where the file puts them the body "
-                                       "is between their sides");
+        run.result.decisions.push_back("panels " + names + " were laid round the body in pleats before sewing: the body would be "
+                                       "between their sides");
 }
 
 } // namespace

@@ -40,7 +40,7 @@ constexpr double too_tight = 0.005;            // m, missing round the garment,
 constexpr int long_tight = 500;                // and `tight` after so many iterations, of which
 constexpr double tight_gain = 0.1;             // this share has to have gone since, for it to go on
 constexpr double near_rest = 0.1;              // residual from which cloth goes in circles when it has not become half as near
-constexpr int circle = 200;                    // to rest in so many iterations
+constexpr int circle = harder_iterations;      // to rest in more iterations than limits are hardened for
 constexpr int most_circles = 5;
 constexpr double coarse_motion_residual = 0.3; // less than the 1 of free fall
 
@@ -110,7 +110,7 @@ struct RestWatch {
             nearest = residual;
             since = iteration;
         }
-        in_circles = nearest < near_rest && iteration - since >= circle;
+        in_circles = nearest < near_rest && iteration - since > circle;
         return in_circles;
     }
 };

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 
 namespace toile {
 
@@ -143,6 +144,14 @@ bool touches_body(const ClothProblem& problem, const Points& x, double height, d
     for (std::size_t i = 0; i < x.size(); ++i)
         if (force[i].squaredNorm() > 0 && std::abs(x[i].y() - height) < reach) return true;
     return false;
+}
+
+std::optional<double> armpit_height(const DrapeRun& run) {
+    try {
+        return measure_body(run.avatar).armpit_y;
+    } catch (const std::invalid_argument&) {
+        return std::nullopt;
+    }
 }
 
 } // namespace toile

@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <map>
+#include <optional>
 
 namespace toile {
 
@@ -103,5 +104,8 @@ std::vector<HookSpring> hooks_on(const DrapeRun& run, const Garment& garment, co
 
 /// Whether cloth at this height, or nearer to it than `reach`, touches the body.
 bool touches_body(const ClothProblem& problem, const Points& x, double height, double reach);
+
+/// Height of the armpits of the whole body, m; nothing when it is no figure.
+std::optional<double> armpit_height(const DrapeRun& run);
 
 } // namespace toile

@@ -13,7 +13,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 
 namespace toile {
 
@@ -68,11 +67,8 @@ bool fell_off(const DrapeRun& run) {
 /// Whether nothing but its own fit carries the garment: it has neither pins nor labelled edges, and ends below the armpits.
 bool carried_by_fit(const DrapeRun& run) {
     if (!nothing_carries(run)) return false;
-    try {
-        return top_height(run.staging.levels[0].placed) < measure_body(run.avatar).armpit_y;
-    } catch (const std::invalid_argument&) { // no figure
-        return false;
-    }
+    const std::optional<double> armpit = armpit_height(run);
+    return armpit && top_height(run.staging.levels[0].placed) < *armpit;
 }
 
 /// Whether the cloth starts out hardly strained by sewing: it has all of its way before it, though it lacks little force.

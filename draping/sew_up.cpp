@@ -10,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <tuple>
 
 namespace toile {
@@ -69,13 +68,9 @@ Start place(const DrapeRun& run, double lift, const std::vector<bool>& outside =
 
 /// By panel, the skirts at x with the body between the sides of some of these seams, unless they are pinned.
 std::vector<bool> skirt_to_wrap(const DrapeRun& run, const Points& x, const std::vector<char>& split) {
-    double armpit = 0;
-    try {
-        armpit = measure_body(run.avatar).armpit_y;
-    } catch (const std::invalid_argument&) { // no figure
-        return {};
-    }
-    std::vector<bool> skirt = skirt_round_arms(run.staging.levels[0].garment, x, run.body, split, armpit);
+    const std::optional<double> armpit = armpit_height(run);
+    if (!armpit) return {};
+    std::vector<bool> skirt = skirt_round_arms(run.staging.levels[0].garment, x, run.body, split, *armpit);
     const std::vector<bool> pinned = pinned_panels(run);
     bool any = false;
     for (std::size_t p = 0; p < skirt.size(); ++p) {

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/wrap.h"
 
+#include "draping/energy/grain.h"
 #include "draping/place.h"
 #include "draping/pull_shut.h"
 #include "draping/rings.h"
 #include "geometry/intersections.h"
 #include "sewing/sparse_solve.h"
-
-#include <Eigen/LU>
 
 #include <algorithm>
 #include <cmath>
@@ -37,7 +36,7 @@ struct Skirt {
     std::vector<int> unknown = {};   ///< by node; -1: of another panel
     int count = 0;                   ///< of unknowns
     std::vector<double> areas = {};  ///< by triangle, m2
-    std::vector<Eigen::Matrix<double, 3, 2>> slopes = {}; ///< of the hat functions of its corners along the cloth
+    std::vector<GrainShape> slopes = {}; ///< of the hat functions of its corners along the cloth
 
     bool has(int node) const { return unknown[node] >= 0; }
     bool between(const Stitch& s) const { return has(s.a) && has(s.b[0]); }
@@ -56,12 +55,9 @@ Skirt skirt_of(const Garment& g, const Points& x, const std::vector<bool>& round
     skirt.unknown.assign(g.node_count, -1);
     for (int t = 0; t < int(g.triangles.size()); ++t) {
         if (!round[g.panel_of_triangle[t]]) continue;
-        const Mat2 inverse = g.rest.edges[t].inverse();
-        Eigen::Matrix<double, 3, 2> slopes;
-        slopes << -inverse.colwise().sum(), inverse;
         skirt.triangles.push_back(t);
         skirt.areas.push_back(rest_area(g.rest.edges[t]));
-        skirt.slopes.push_back(slopes);
+        skirt.slopes.push_back(grain_shape(g.rest.edges[t]));
         for (int i : g.nodes(t))
             if (!skirt.has(i)) skirt.unknown[i] = skirt.count++;
     }
@@ -141,11 +137,9 @@ std::vector<double> senses(const Skirt& skirt, const Vec3& axis) {
     const Garment& g = skirt.garment;
     std::vector<Vec3> normals(g.panel_names.size(), Vec3::Zero());
     for (std::size_t k = 0; k < skirt.triangles.size(); ++k) {
-        Eigen::Matrix3d corners;
-        const Triangle v = g.nodes(skirt.triangles[k]);
-        for (int i = 0; i < 3; ++i) corners.col(i) = skirt.x[v[i]];
-        const Eigen::Matrix<double, 3, 2> yarns = corners * skirt.slopes[k];
-        normals[g.panel_of_triangle[skirt.triangles[k]]] += skirt.areas[k] * Vec3(yarns.col(0).cross(yarns.col(1)));
+        const int t = skirt.triangles[k];
+        const GrainImages yarns = grain_images(g.nodes(t), skirt.slopes[k], skirt.x);
+        normals[g.panel_of_triangle[t]] += skirt.areas[k] * Vec3(yarns.col(0).cross(yarns.col(1)));
     }
     const std::vector<Vec3> middles = panel_middles(g, skirt.x);
     std::vector<double> sense;

@@ -207,107 +207,139 @@ SettleResult settle_within_limits(DrapeRun& run, ClothProblem& problem, Cholesky
     return r;
 }
 
-void settle_level(DrapeRun& run) {
-    const auto start = DrapeRun::Clock::now();
+namespace {
+
+struct Pass {
+    double softness; ///< of the membrane
+    int iterations;
+    bool hooked;
+    bool slides = false; ///< without friction
+};
+
+/// The level at work, with what acts on it.
+struct Settling {
+    DrapeRun& run;
+    const bool first = run.level == 0;
     const ContactOptions contact = run.contact_options();
     const PanelFabrics fabrics = run.level_fabrics();
     const Method method = moves(run.options) ? Method::equilibrium : run.options.method;
-    ClothProblem problem(make_energy(method, run.garment, fabrics, run.options.method_options), run.garment, fabrics, run.body,
-                         contact);
-    problem.gravity = run.options.gravity;
-    add_fixtures(run, problem);
-    Cholesky factor;
-    const bool first = run.level == 0;
-    const std::vector<HookSpring> kept = problem.hooks;
-    if (first) problem.hooks = hooks_on(run, run.garment, all_hooked(run), problem);
-    run.begin("settle", 0.85 * run.level_share());
-    problem.rest_here(run.x, run.result.friction, run.facts.restarted);
-    if (problem.sheet()) problem.sheet()->softness = run.facts.restarted ? 1 : first ? 1.0 / 16 : 1.0 / 4;
+    ClothProblem problem{make_energy(method, run.garment, fabrics, run.options.method_options), run.garment, fabrics, run.body,
+                         contact};
+    const bool own_points = has_own_points(problem);
+    const bool by_fit = carried_by_fit(run);
+    Cholesky factor = {};
+    std::vector<HookSpring> kept = {};        ///< hooks that stay when the others are let go
     bool tangled = true;
-    const auto untangle = [&] {
+    std::optional<LevelInMotion> motion = {}; ///< when a response takes over: the same cloth, in motion
+    ClothProblem* sheet = nullptr;            ///< whose membrane can be softened; null: of another model
+    TightWatch tight{run};
+    std::vector<Pass> passes = {};
+    SettleResult end = {};
+    RestResult rest = {}; ///< of cloth in motion
+
+    explicit Settling(DrapeRun& at_work) : run(at_work) {
+        problem.gravity = run.options.gravity;
+        add_fixtures(run, problem);
+        kept = problem.hooks;
+        if (first) problem.hooks = hooks_on(run, run.garment, all_hooked(run), problem);
+        run.begin("settle", 0.85 * run.level_share());
+        problem.rest_here(run.x, run.result.friction, run.facts.restarted);
+        if (problem.sheet()) problem.sheet()->softness = run.facts.restarted ? 1 : first ? 1.0 / 16 : 1.0 / 4;
+        untangle();
+        if (moves(run.options)) motion.emplace(run, problem);
+        sheet = motion ? motion->sheet.get() : problem.sheet() ? &problem : nullptr;
+        plan();
+    }
+
+    Loads& acting() { return motion ? motion->stepper->loads() : problem; }
+    bool hooks_to_release() { return acting().hooks.size() > kept.size(); }
+
+    void untangle() {
         tangled = !take_apart_or_leave_out(run, problem.contact());
         clear_of_body(run, problem, factor);
         run.stage = "settle";
-    };
-    untangle();
-
-    // From this start on a response may take over: the same cloth, in motion.
-    std::optional<LevelInMotion> motion;
-    if (moves(run.options)) motion.emplace(run, problem);
-    ClothProblem* const sheet = motion ? motion->sheet.get() : problem.sheet() ? &problem : nullptr; // null: of another model
-    Loads& acting = motion ? motion->stepper->loads() : problem;
-
-    struct Pass {
-        double softness;
-        int iterations;
-        bool hooked;
-        bool slides = false; ///< without friction
-    };
-    // A carrying edge finds the height at which it fits before friction may hold it, since a tight band on a
-    // slight cone is held by friction at any height.
-    const bool own_points = has_own_points(problem);
-    std::vector<Pass> passes{{1.0 / 4, 8, false}, {1, most_iterations, false}};
-    if (first)
-        passes = {{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, run.last_level() ? most_iterations : 150, false}};
-    if (first) run.loose = !motion && !own_points && acting.hooks.empty() && starts_loose(run);
-    if (!sheet) passes.erase(passes.begin(), passes.end() - (first ? 2 : 1)); // nothing to soften
-    if (run.facts.restarted || run.loose) passes = {{1, most_iterations, false}};
-    // Cloth that keeps its lengths finds the place where it fits before friction may hold it: a band on a slight cone would
-    // be held at any height, by ever larger tensions.
-    if (own_points && !run.facts.restarted) {
-        passes.insert(passes.end() - 1, {1, most_sliding, first, true});
-        problem.friction.coefficient = problem.cloth_friction.coefficient = 0;
     }
-    if (acting.hooks.size() > kept.size()) {
-        passes.insert(passes.end() - 1, {1, 100, true});
-        problem.friction.coefficient = problem.cloth_friction.coefficient = 0;
+
+    void without_friction() { problem.friction.coefficient = problem.cloth_friction.coefficient = 0; }
+
+    /// Sets the passes. A carrying edge, and cloth that keeps its lengths, find the height at which they fit before friction
+    /// may hold them: it would hold a tight band on a slight cone at any height.
+    void plan() {
+        passes = {{1.0 / 4, 8, false}, {1, most_iterations, false}};
+        if (first)
+            passes = {{1.0 / 16, 100, true}, {1.0 / 4, 60, true}, {1, run.last_level() ? most_iterations : 150, false}};
+        if (first) run.loose = !motion && !own_points && acting().hooks.empty() && starts_loose(run);
+        if (!sheet) passes.erase(passes.begin(), passes.end() - (first ? 2 : 1)); // nothing to soften
+        if (run.facts.restarted || run.loose) passes = {{1, most_iterations, false}};
+        if (own_points && !run.facts.restarted) {
+            passes.insert(passes.end() - 1, {1, most_sliding, first, true});
+            without_friction();
+        }
+        if (hooks_to_release()) {
+            passes.insert(passes.end() - 1, {1, 100, true});
+            without_friction();
+        }
     }
-    const bool by_fit = carried_by_fit(run);
-    SettleResult r;
-    TightWatch tight{run};
-    RestResult rest;
-    for (const Pass& pass : passes) {
-        if (run.stopped) break;
-        const bool last_pass = &pass == &passes.back();
-        if (sheet) {
-            soften(run, *sheet, acting, pass.softness);
-            // Soft cloth that only its fit carries would be stretched by its weight and slide down.
-            acting.gravity = run.options.gravity * (by_fit ? pass.softness : 1);
-        }
-        if (!pass.hooked && acting.hooks.size() > kept.size()) {
-            note_release(run);
-            acting.hooks = kept;
-            problem.rest_here(run.x, run.result.friction);
-        } else if (own_points && last_pass && passes.size() > 1) {
-            problem.rest_here(run.x, run.result.friction);
-        }
+
+    bool last(const Pass& pass) const { return &pass == &passes.back(); }
+    bool gives_result(const Pass& pass) const { return last(pass) && run.last_level(); }
+
+    SettleOptions options(const Pass& pass) const {
         SettleOptions o;
-        o.tolerance = run.last_level() && last_pass ? run.options.tolerance : run.loose ? loose_residual : coarse_residual;
-        if (run.last_level() && last_pass) {
+        o.tolerance = gives_result(pass) ? run.options.tolerance : run.loose ? loose_residual : coarse_residual;
+        if (gives_result(pass)) {
             o.still = run.options.still;
             o.still_below = still_residual;
         }
         o.max_iterations = pass.iterations;
-        o.exact_below = last_pass ? 20 : 0;
-        if (sheet && (pass.softness == 1 || !first))
-            sheet->limit_strain(last_pass && run.last_level() ? hard_limit : soft_limit);
-        if (motion) {
-            const bool last = last_pass && run.last_level();
-            rest = motion->rest(run, last ? run.options.tolerance : coarse_motion_residual, pass.iterations, last);
-            if (!rest.broken.empty()) break;
-            continue;
+        o.exact_below = last(pass) ? 20 : 0;
+        return o;
+    }
+
+    void begin(const Pass& pass) {
+        if (sheet) {
+            soften(run, *sheet, acting(), pass.softness);
+            // Soft cloth that only its fit carries would be stretched by its weight and slide down.
+            acting().gravity = run.options.gravity * (by_fit ? pass.softness : 1);
+            if (pass.softness == 1 || !first) sheet->limit_strain(gives_result(pass) ? hard_limit : soft_limit);
         }
-        // What did not come apart may do so when the cloth has moved.
+        if (!pass.hooked && hooks_to_release()) {
+            note_release(run);
+            acting().hooks = kept;
+            problem.rest_here(run.x, run.result.friction);
+        } else if (own_points && last(pass) && passes.size() > 1) {
+            problem.rest_here(run.x, run.result.friction);
+        }
+    }
+
+    /// What did not come apart may do so when the cloth has moved.
+    void untangle_on_the_way(const SettleOptions& o, bool at_last) {
+        SettleOptions some = o;
+        some.max_iterations = std::min(o.max_iterations, untangle_every);
         for (int k = 0; tangled && k < most_untangles && !run.stopped; ++k) {
-            SettleOptions some = o;
-            some.max_iterations = std::min(o.max_iterations, untangle_every);
             run.settle_some(problem, run.x, factor, some);
             untangle();
         }
-        if (tangled && last_pass && !run.stopped && untangle_as_mesh(run)) untangle();
+        if (tangled && at_last && !run.stopped && untangle_as_mesh(run)) untangle();
+    }
+
+    /// Rounds of motion without friction, between which constraints take up forces.
+    void slide(SettleOptions o, const std::function<SettleResult(const SettleOptions&)>& settle_on) {
+        o.tolerance = sliding_residual;
+        for (int k = 0; k < most_slides && !run.stopped; ++k) {
+            settle_on(o);
+            problem.take_up(problem.all_points(run.x));
+            if (problem.kept_strain().value_or(0) < slid_strain) break;
+            o.time_step = TakeUpOptions{}.time_step;
+        }
+    }
+
+    void settle(const Pass& pass) {
+        SettleOptions o = options(pass);
+        untangle_on_the_way(o, last(pass));
         RestWatch watch;
-        if (last_pass) o.progress = [&](int i, double residual) { return !watch.gives_up(i, residual) && !tight.gives_up(i); };
-        const auto some = [&](const SettleOptions& how) {
+        if (last(pass)) o.progress = [&](int i, double residual) { return !watch.gives_up(i, residual) && !tight.gives_up(i); };
+        const auto settle_on = [&](const SettleOptions& how) {
             SettleResult now = run.settle_some(problem, run.x, factor, how);
             // Held as it lies, with what friction can bear, it is at rest or soon comes to it.
             for (int k = 0; k < most_circles && watch.in_circles && !run.stopped; ++k) {
@@ -317,56 +349,73 @@ void settle_level(DrapeRun& run) {
             }
             return now;
         };
-        if (pass.slides) {
-            o.tolerance = sliding_residual;
-            for (int k = 0; k < most_slides && !run.stopped; ++k) {
-                some(o);
-                problem.take_up(problem.all_points(run.x));
-                if (problem.kept_strain().value_or(0) < slid_strain) break;
-                o.time_step = TakeUpOptions{}.time_step;
-            }
-        } else {
-            r = last_pass && run.last_level() ? settle_constrained(problem, run.x, o, some) : some(o);
-        }
-        if (sheet && last_pass && run.last_level()) r = settle_within_limits(run, problem, factor, o, r);
+        if (pass.slides)
+            slide(o, settle_on);
+        else
+            end = gives_result(pass) ? settle_constrained(problem, run.x, o, settle_on) : settle_on(o);
+        if (sheet && gives_result(pass)) end = settle_within_limits(run, problem, factor, o, end);
     }
-    if (!motion) run.result.residual = r.residual;
-    ContactReport& report = run.result.contact;
-    if (run.level == 0 || run.facts.restarted)
-        report.guarantee = motion ? motion->response->guarantee() : Guarantee::no_crossing;
-    if (tangled || run.result.drawn_in > 0 || report.unresolved > 0) report.guarantee = Guarantee::none;
-    run.result.barrier = {contact.body.distance, contact.body.stiffness, contact.cloth.stiffness};
-    run.facts.kept_strain = motion ? motion->stepper->kept_strain() : problem.kept_strain();
-    if (run.last_level()) {
+
+    /// The same by a response to contact, to the same end.
+    void settle_in_motion(const Pass& pass) {
+        rest = motion->rest(run, gives_result(pass) ? run.options.tolerance : coarse_motion_residual, pass.iterations,
+                            gives_result(pass));
+    }
+
+    DrapeStatus status(bool within_limits) const {
+        const bool at_rest = motion ? rest.rested : end.end == SettleEnd::settled;
+        const bool out_of_steps = motion ? !at_rest && rest.broken.empty() : run.iterations_left <= 0 && within_limits;
+        if (run.stopped || out_of_steps) return DrapeStatus::limit;
+        if (run.result.drawn_in > 0) return DrapeStatus::too_small;
+        return at_rest && (within_limits || !sheet) ? DrapeStatus::converged : DrapeStatus::stalled; // others promise no limits
+    }
+
+    void note_result() {
+        DrapeResult& result = run.result;
         const int beyond = int(problem.beyond_limits(run.x).size());
         if (motion) problem.touch(run.x);
-        note_facts(run, acting, motion ? motion->touch_facts(problem.contact()) : count_touching(problem.contact(), run.x));
-        const bool at_rest = motion ? rest.rested : r.end == SettleEnd::settled;
-        const bool out_of_steps = motion ? !at_rest && rest.broken.empty() : run.iterations_left <= 0 && beyond == 0;
-        if (run.stopped || out_of_steps)
-            run.result.status = DrapeStatus::limit;
-        else if (run.result.drawn_in > 0)
-            run.result.status = DrapeStatus::too_small;
-        else if (at_rest && (beyond == 0 || !sheet)) // other methods promise no limits
-            run.result.status = DrapeStatus::converged;
-        else
-            run.result.status = DrapeStatus::stalled;
-        if (run.result.status == DrapeStatus::converged && run.options.still > 0)
-            run.result.tolerance = std::max(run.options.tolerance, still_residual);
-        if (run.result.status != DrapeStatus::converged) {
+        note_facts(run, acting(), motion ? motion->touch_facts(problem.contact()) : count_touching(problem.contact(), run.x));
+        result.status = status(beyond == 0);
+        if (result.status == DrapeStatus::converged) {
+            if (run.options.still > 0) result.tolerance = std::max(run.options.tolerance, still_residual);
+        } else {
             if (motion) motion->stepper->residual(motion->cloth); // tells which node is worst
-            note_where(run, problem, r.end, motion ? motion->stepper->worst_node() : problem.worst_node());
+            note_where(run, problem, end.end, motion ? motion->stepper->worst_node() : problem.worst_node());
             if (!rest.broken.empty())
-                run.result.where = rest.broken + "; " + run.result.where;
-            else if (motion && !at_rest)
-                run.result.where += text("; not at rest after %d steps, at %.2g m/s", run.result.levels.back().iterations,
-                                         rest.speed);
+                result.where = rest.broken + "; " + result.where;
+            else if (motion && !rest.rested)
+                result.where += text("; not at rest after %d steps, at %.2g m/s", result.levels.back().iterations, rest.speed);
         }
-        if (beyond > 0)
-            run.result.warnings.push_back(
-                text("%d triangles are stretched beyond their fabric's limit", beyond));
+        if (beyond > 0) result.warnings.push_back(text("%d triangles are stretched beyond their fabric's limit", beyond));
     }
-    report.seconds += problem.contact().clock().seconds() + (motion ? motion->cloth.contact.seconds() : 0);
+
+    void conclude() {
+        if (!motion) run.result.residual = end.residual;
+        ContactReport& report = run.result.contact;
+        if (run.level == 0 || run.facts.restarted)
+            report.guarantee = motion ? motion->response->guarantee() : Guarantee::no_crossing;
+        if (tangled || run.result.drawn_in > 0 || report.unresolved > 0) report.guarantee = Guarantee::none;
+        run.result.barrier = {contact.body.distance, contact.body.stiffness, contact.cloth.stiffness};
+        run.facts.kept_strain = motion ? motion->stepper->kept_strain() : problem.kept_strain();
+        if (run.last_level()) note_result();
+        report.seconds += problem.contact().clock().seconds() + (motion ? motion->cloth.contact.seconds() : 0);
+    }
+};
+
+} // namespace
+
+void settle_level(DrapeRun& run) {
+    const auto start = DrapeRun::Clock::now();
+    Settling level(run);
+    for (const Pass& pass : level.passes) {
+        if (run.stopped || !level.rest.broken.empty()) break;
+        level.begin(pass);
+        if (level.motion)
+            level.settle_in_motion(pass);
+        else
+            level.settle(pass);
+    }
+    level.conclude();
     run.book(text("settle %g mm", 1e3 * run.edge_length()), start);
 }
 

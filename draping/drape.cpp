@@ -7,6 +7,7 @@
 #include "draping/pull_shut.h"
 #include "draping/settle_level.h"
 #include "draping/sew_up.h"
+#include "draping/slide.h"
 #include "draping/take_apart.h"
 #include "draping/where.h"
 #include "geometry/simplify.h"
@@ -23,7 +24,6 @@ namespace {
 
 constexpr double body_edge_share = 0.8;  // of the edge length: mean edge of the body on levels that are not the last
 constexpr double body_error_share = 0.5; // of their contact distance: by which it may be moved
-constexpr double slid = 0.10;            // m below its place at which a held edge counts as slid off
 
 /// A level touches the body that it can tell from the avatar: the last the avatar itself, the others one of
 /// triangles like theirs.
@@ -65,59 +65,12 @@ void refine(DrapeRun& run) {
     run.result.levels.push_back({staged.edge_length, int(run.garment.uv.size()), 0, 0, 0});
 }
 
-/// The largest strain that a fabric of the garment allows; a limit of 0 is none.
-double most_stretch(const DrapeRun& run) {
-    double most = 0;
-    for (const Fabric& f : run.fabrics)
-        for (const double limit : {f.limit_warp, f.limit_weft})
-            most = std::max(most, limit > 0 ? limit : std::numeric_limits<double>::infinity());
-    return most;
-}
-
-/// What a tape measure reads at most round the torso between two heights.
-double widest_girth(const TriMesh& body, double low, double high) {
-    double widest = 0;
-    for (double y = low; y <= high; y += 0.01) widest = std::max(widest, torso_girth(body, y));
-    return widest;
-}
-
-/// Whether the edges that hooks held are still at their height.
-void prove_heights(DrapeRun& run) {
-    for (const auto& [label, height] : label_heights(run.garment, run.x, all_hooked(run))) {
-        const double drop = run.carried_at[label] - height;
-        if (drop < slid) continue;
-        const double longest = (1 + most_stretch(run)) * label_length(run.garment, label);
-        const double widest = widest_girth(run.avatar, height, run.carried_at[label]);
-        run.result.status = longest < widest - tight ? DrapeStatus::too_small : DrapeStatus::slid_off;
-        run.result.where = text("edges labelled \"%s\" slid %.0f cm down from their place at %.2f m", label.c_str(),
-                                100 * drop, run.carried_at[label]);
-        if (run.result.status == DrapeStatus::too_small)
-            run.result.where += text(", over a girth of %.1f cm, which they do not pass: %.1f cm are missing",
-                                     100 * widest, 100 * (widest - longest));
-    }
-}
-
-/// Whether a garment that no labelled edge carries has slid over the widest of what it was put on. A hood may fall, a skirt hang down and
-/// come to sit on the hips; that has sunk with its top and on the whole, and is where the body is slighter again.
-void prove_height_without_labels(DrapeRun& run) {
-    if (!nothing_carries(run)) return;
-    const Points& placed = run.staging.levels[0].placed;
-    const double place = top_height(placed), top = top_height(run.x);
-    if (place - top < slid || mean_height(placed) - mean_height(run.x) < slid) return;
-    const double widest = widest_girth(run.avatar, top, place);
-    if (torso_girth(run.avatar, top) > widest - tight) return;
-    run.result.status = DrapeStatus::slid_off;
-    run.result.where = text("the garment, which has no labelled edge to carry it, slid down: its top is %.0f cm below its place at %.2f m, "
-                            "and has passed a girth of %.1f cm",
-                            100 * (place - top), place, 100 * widest);
-}
-
 /// What the promises that a residual does not show have come to.
 void prove(DrapeRun& run) {
     if (run.stopped || run.result.status == DrapeStatus::too_small) return; // what is too small slides as well
-    if (!is_animated(run.options)) { // what moves may fall
-        prove_heights(run);
-        prove_height_without_labels(run);
+    if (const std::optional<Slide> slide = is_animated(run.options) ? std::nullopt : find_slide(run)) { // what moves may fall
+        run.result.status = slide->status;
+        run.result.where = slide->where;
     }
     if (run.result.status != DrapeStatus::converged && run.result.status != DrapeStatus::animated) return;
     const IntersectionCount n =

@@ -4,6 +4,7 @@
 #include "draping/hooks.h"
 #include "draping/respond.h"
 #include "draping/settle_cloth.h"
+#include "draping/slide.h"
 #include "draping/take_apart.h"
 #include "draping/untangle_garment.h"
 #include "draping/where.h"
@@ -233,6 +234,7 @@ struct Settling {
     std::optional<LevelInMotion> motion = {}; ///< when a response takes over: the same cloth, in motion
     ClothProblem* sheet = nullptr;            ///< whose membrane can be softened; null: of another model
     TightWatch tight{run};
+    SlideWatch slide{run};
     std::vector<Pass> passes = {};
     SettleResult end = {};
     RestResult rest = {}; ///< of cloth in motion
@@ -324,7 +326,7 @@ struct Settling {
     }
 
     /// Rounds of motion without friction, between which constraints take up forces.
-    void slide(SettleOptions o, const std::function<SettleResult(const SettleOptions&)>& settle_on) {
+    void find_place(SettleOptions o, const std::function<SettleResult(const SettleOptions&)>& settle_on) {
         o.tolerance = sliding_residual;
         for (int k = 0; k < most_slides && !run.stopped; ++k) {
             settle_on(o);
@@ -338,7 +340,10 @@ struct Settling {
         SettleOptions o = options(pass);
         untangle_on_the_way(o, last(pass));
         RestWatch watch;
-        if (last(pass)) o.progress = [&](int i, double residual) { return !watch.gives_up(i, residual) && !tight.gives_up(i); };
+        if (last(pass))
+            o.progress = [&](int i, double residual) {
+                return !watch.gives_up(i, residual) && !tight.gives_up(i) && !slide.gives_up(i);
+            };
         const auto settle_on = [&](const SettleOptions& how) {
             SettleResult now = run.settle_some(problem, run.x, factor, how);
             // Held as it lies, with what friction can bear, it is at rest or soon comes to it.
@@ -350,7 +355,7 @@ struct Settling {
             return now;
         };
         if (pass.slides)
-            slide(o, settle_on);
+            find_place(o, settle_on);
         else
             end = gives_result(pass) ? settle_constrained(problem, run.x, o, settle_on) : settle_on(o);
         if (sheet && gives_result(pass)) end = settle_within_limits(run, problem, factor, o, end);

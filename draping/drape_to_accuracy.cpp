@@ -286,10 +286,13 @@ void decide_edge(AccuracyRun& run, std::string what, std::string measure, double
 std::optional<double> choose_next(AccuracyRun& run) {
     AccuracyReport& r = run.report;
     const double last = run.mesh(0).edge_length;
-    if (run.result.status == DrapeStatus::stalled && last > usual_edge * (1 + 1e-9)) { // too few triangles for limits and folds
+    const bool small = run.result.status == DrapeStatus::too_small;
+    const bool coarse = last > std::max(usual_edge, run.accuracy.finest) * (1 + 1e-9); // too few triangles for limits and folds
+    if (coarse && (small || run.result.status == DrapeStatus::stalled)) {
         r.decisions[run.edge_decision].taken_back = true;
         const double edge = std::max(most_finer * last, run.accuracy.finest);
-        decide_edge(run, text("a mesh of %.3g mm, sewn anew, since that of %.3g mm did not come to rest", 1e3 * edge, 1e3 * last),
+        decide_edge(run, text("a mesh of %.3g mm, sewn anew, since that of %.3g mm %s", 1e3 * edge, 1e3 * last,
+                              small ? "is too coarse to tell that cloth is missing" : "did not come to rest"),
                     "residual that it came to", std::isfinite(run.result.residual) ? run.result.residual : 0);
         return edge;
     }

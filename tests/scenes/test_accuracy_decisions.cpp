@@ -99,6 +99,19 @@ TEST_CASE("equal triangles everywhere change a drape to an accuracy by less than
     CHECK(compare(surface(chosen), surface(other)).rms < asked);
 }
 
+TEST_CASE("cloth that is missing on the first mesh of a drape to an accuracy is looked for again at half its edge length") {
+    const Dressed worn(TOILE_SOURCE_DIR "/examples/tee.json", "denim", make_form({}));
+    AccuracyOptions o = worn.options(5e-3);
+    o.finest = 0.04;
+    CHECK(worn.drape(o).status == DrapeStatus::too_small); // its neckline, by triangles that cannot lie round the neck
+    o.finest = 0.02;
+    const DrapeResult r = worn.drape(o);
+    CHECK(r.status == DrapeStatus::converged);
+    CHECK(r.accuracy->meshes.size() == 2);
+    CHECK(about(*r.accuracy, "a first mesh")->taken_back);
+    CHECK(about(*r.accuracy, "too coarse to tell that cloth is missing"));
+}
+
 TEST_CASE("contact of the cloth with itself that is left out changes a drape to an accuracy by less than a tenth of what it was asked for") {
     constexpr double asked = 5e-3;
     const auto pattern = test::test_data("garmentcode/pencil_skirt_specification.json"), body = test::test_data("bodies/mean_female.obj");

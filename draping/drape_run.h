@@ -54,6 +54,7 @@ struct DrapeRun {
     std::map<std::string, double> carried_at = {}; ///< mean height of each of these where the file puts it
     bool open = false;         ///< a seam could not be closed
     bool loose = false;        ///< the coarsest level started out hardly strained
+    bool sliding = false;      ///< a level was given up since it slid off: those after it would as well
     DrapeFacts facts = {};
 
     static double seconds_since(Clock::time_point start) {

@@ -75,11 +75,11 @@ std::optional<Slide> find_slide(const DrapeRun& run, double least) {
 }
 
 bool SlideWatch::gives_up(int iteration) {
-    if (iteration % look_every) return false;
+    if (run.sliding || iteration % look_every) return run.sliding;
     const double last = height;
     const std::optional<Slide> s = find_slide(run, for_good * slid);
     height = s ? s->height : std::numeric_limits<double>::infinity();
-    return s && s->status == DrapeStatus::slid_off && std::isfinite(last) && last - height > sinking;
+    return run.sliding = s && s->status == DrapeStatus::slid_off && std::isfinite(last) && last - height > sinking;
 }
 
 } // namespace toile

@@ -23,9 +23,9 @@ struct Slide {
 std::optional<Slide> find_slide(const DrapeRun& run, double least = slid);
 
 /// Tells when cloth that is to come to rest has slid so far that it will not come back, and slides on: it would
-/// take hundreds of iterations to the floor.
+/// take hundreds of iterations to the floor. Finer levels are then given up where they start.
 struct SlideWatch {
-    const DrapeRun& run;
+    DrapeRun& run;
     double height = std::numeric_limits<double>::infinity(); ///< m, when looked at last; infinite: in its place
 
     bool gives_up(int iteration);

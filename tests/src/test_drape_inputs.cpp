@@ -195,7 +195,7 @@ TEST_CASE("an elastic waist is drawn in and keeps the skirt up, and its cloth ke
     const auto finer = drape({folder / "wide.json", "--edge-length", "15mm", "-o", folder / "finer.obj"}, 3);
     CHECK(finer["status"] == "slid_off");
     CHECK(finer["levels"][1]["iterations"] < 50); // nor on a level that is not the last,
-    CHECK(finer["levels"][2]["iterations"] < 50); // nor on those after it
+    CHECK(finer["levels"][2]["iterations"] < 20); // and no more on those after it
 
     for (auto& panel : pattern["pattern"]["panels"])
         for (auto& edge : panel["edges"]) edge.erase("label");

@@ -200,6 +200,9 @@ std::vector<std::string> decisions(const DrapeFacts& f, const Garment& g, const 
     if (f.held_as_it_lay > 0)
         out.push_back(text("near rest, where it and contact chased one another, friction took up what forces were left %s, as far as "
                            "it can bear them", f.held_as_it_lay == 1 ? "once" : text("%d times", f.held_as_it_lay).c_str()));
+    if (f.slid_to_fit > 0)
+        out.push_back(text("where friction held it the garment was too tight: it was let slide without, by up to %.0f mm, and is held where it came to lie",
+                           1e3 * f.slid_to_fit));
     if (f.untangled_as_mesh > 0)
         out.push_back(text("cloth that stayed tangled while it settled was taken apart without regard to its pattern on %d "
                            "of the levels, and settled again",

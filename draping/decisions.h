@@ -50,6 +50,7 @@ struct DrapeFacts {
     std::vector<double> edge_lengths; ///< m, per level
     int untangled = 0;               ///< crossings of edges and triangles of cloth that were taken apart
     int held_as_it_lay = 0;          ///< times that friction took up what was left near rest, since it went in circles
+    double slid_to_fit = 0;          ///< m, how far what was too tight slid at most when friction let it go; 0: it was not let
     int untangled_as_mesh = 0;       ///< levels on which the rest was taken apart as a mesh
     int pins = 0;                    ///< nodes held
     int band_segments = 0;           ///< of elastics

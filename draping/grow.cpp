@@ -12,13 +12,13 @@ constexpr double grow_distance = 2e-3; // m, contact distance while the body gro
 constexpr double grow_share = 0.5; // of the way to the cloth that the body takes at once, lest it get stuck there
 constexpr double grow_gain = 0.03; // share of the way left that counts as nearer
 
+} // namespace
+
 double farthest(const Points& a, const Points& b) {
     double most = 0;
     for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, (a[i] - b[i]).norm());
     return most;
 }
-
-} // namespace
 
 ContactOptions while_growing(const ContactOptions& at_rest) {
     ContactOptions wide = at_rest;

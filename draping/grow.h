@@ -10,6 +10,9 @@ namespace toile {
 
 inline constexpr int grow_patience = 10; ///< rounds in which a body has to come nearer to its full size
 
+/// How far points are from as many others at most, m.
+double farthest(const Points& a, const Points& b);
+
 /// The barriers while a body grows, in place of those of cloth at rest: the body's reaches farther, for the farther it
 /// does, the farther cloth is pushed along in a round.
 ContactOptions while_growing(const ContactOptions& at_rest);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "draping/settle_level.h"
 
+#include "draping/grow.h"
 #include "draping/hooks.h"
 #include "draping/respond.h"
 #include "draping/settle_cloth.h"
@@ -358,7 +359,35 @@ struct Settling {
             find_place(o, settle_on);
         else
             end = gives_result(pass) ? settle_constrained(problem, run.x, o, settle_on) : settle_on(o);
-        if (sheet && gives_result(pass)) end = settle_within_limits(run, problem, factor, o, end);
+        if (!sheet || !gives_result(pass)) return;
+        end = settle_within_limits(run, problem, factor, o, end);
+        slide_to_fit(o);
+    }
+
+    bool beyond_limits() const { return !problem.beyond_limits(run.x).empty(); }
+
+    double missing() const { return find_tightness(run.garment, run.x, run.fabrics).any_missing(); }
+
+    /// Friction holds what is too tight on a slight cone however hard it pulls, and bunched cloth where it is: before it is
+    /// called too small it may slide to where it fits, or rests as well as it can, and is held there.
+    void slide_to_fit(const SettleOptions& o) {
+        if (run.stopped || run.sliding || run.result.drawn_in > 0 || !beyond_limits()) return;
+        const Points before = run.x;
+        const double missed = missing();
+        SettleOptions some = o;
+        some.max_iterations = harder_iterations;
+        sheet->limit_strain(hard_limit);
+        problem.rest_here(run.x, {});
+        const SettleResult r = settle_within_limits(run, problem, factor, some, run.settle_some(problem, run.x, factor, some));
+        const bool fits = !beyond_limits();
+        const bool better = (r.end == SettleEnd::settled || missing() < (1 - tight_gain) * missed) && !find_slide(run);
+        if (!better) run.x = before;
+        problem.rest_here(run.x, run.result.friction, true);
+        problem.touch(run.x);
+        if (!better || run.stopped) return;
+        run.facts.slid_to_fit = farthest(before, run.x);
+        end = run.settle_some(problem, run.x, factor, o);
+        if (fits) end = settle_within_limits(run, problem, factor, o, end);
     }
 
     /// The same by a response to contact, to the same end.

@@ -176,8 +176,9 @@ void note_where(DrapeRun& run, const ClothProblem& problem, SettleEnd end, int w
         text(" is stretched by %.1f %% along the %s, more than the %.1f %% that ", 100 * t.strain,
              t.warp ? "warp" : "weft", 100 * t.limit) +
         run.fabrics[run.garment.panel_of_triangle[t.triangle]].name + " allows";
-    // At rest a section that is too short as a whole is so by however little: no limit, however hard, has helped.
-    const bool short_round = t.any_missing() > tight || (end == SettleEnd::settled && t.missing > 0);
+    // At rest a section that is too short as a whole is so by however little: no limit, however hard, has helped. Nor, where
+    // friction was left out, have parts of it that are longer.
+    const bool short_round = t.any_missing() > tight || (end == SettleEnd::settled && (t.missing > 0 || run.facts.slid_to_fit > 0));
     if (short_round && run.result.status == DrapeStatus::stalled &&
         touches_body(problem, run.x, run.x[run.garment.nodes(t.triangle)[0]].y(), run.edge_length()))
         run.result.status = DrapeStatus::too_small;
@@ -361,7 +362,7 @@ struct Settling {
             end = gives_result(pass) ? settle_constrained(problem, run.x, o, settle_on) : settle_on(o);
         if (!sheet || !gives_result(pass)) return;
         end = settle_within_limits(run, problem, factor, o, end);
-        slide_to_fit(o);
+        slide_to_fit(o, settle_on);
     }
 
     bool beyond_limits() const { return !problem.beyond_limits(run.x).empty(); }
@@ -370,7 +371,7 @@ struct Settling {
 
     /// Friction holds what is too tight on a slight cone however hard it pulls, and bunched cloth where it is: before it is
     /// called too small it may slide to where it fits, or rests as well as it can, and is held there.
-    void slide_to_fit(const SettleOptions& o) {
+    void slide_to_fit(const SettleOptions& o, const std::function<SettleResult(const SettleOptions&)>& settle_on) {
         if (run.stopped || run.sliding || run.result.drawn_in > 0 || !beyond_limits()) return;
         const Points before = run.x;
         const double missed = missing();
@@ -380,13 +381,13 @@ struct Settling {
         problem.rest_here(run.x, {});
         const SettleResult r = settle_within_limits(run, problem, factor, some, run.settle_some(problem, run.x, factor, some));
         const bool fits = !beyond_limits();
-        const bool better = (r.end == SettleEnd::settled || missing() < (1 - tight_gain) * missed) && !find_slide(run);
+        const bool better = (fits || r.end == SettleEnd::settled || missing() < (1 - tight_gain) * missed) && !find_slide(run);
         if (!better) run.x = before;
         problem.rest_here(run.x, run.result.friction, true);
         problem.touch(run.x);
         if (!better || run.stopped) return;
         run.facts.slid_to_fit = farthest(before, run.x);
-        end = run.settle_some(problem, run.x, factor, o);
+        end = settle_on(o);
         if (fits) end = settle_within_limits(run, problem, factor, o, end);
     }
 

@@ -10,9 +10,9 @@ namespace {
 
 constexpr double moves = 0.2;          // share of the longest motion from which a node counts as moving,
 constexpr int rings = 3;               // with so many round it
-constexpr double most_of_all = 0.33;   // of the nodes; a larger part costs more, and what hangs by it has to follow
-constexpr int most_iterations = 40;
-constexpr double gain = 0.05;          // of the residual, and enough
+constexpr double most_of_all = 0.2;    // of the nodes; a larger part costs more, and what hangs by it has to follow
+constexpr int most_iterations = 25;
+constexpr double gain = 0.1;           // of the residual, and enough
 constexpr double least_residual = 2;   // below which Newton's steps of the whole converge at once
 constexpr double step_share = 0.25;    // of the travel, of one step
 constexpr double far = 0.7;            // of the travel: a step more could lead beyond it

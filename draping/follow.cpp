@@ -2,6 +2,7 @@
 #include "draping/follow.h"
 
 #include "draping/contact/carry.h"
+#include "draping/grow.h"
 #include "draping/hooks.h"
 #include "draping/settle_level.h"
 #include "draping/where.h"
@@ -36,12 +37,7 @@ struct Follow {
 
     TriMesh body_now() const { return {problem.contact().body(), run.avatar.triangles}; }
 
-    double farthest_from(const Points& target) const {
-        double most = 0;
-        const Points& now = problem.contact().body();
-        for (std::size_t v = 0; v < now.size(); ++v) most = std::max(most, (target[v] - now[v]).norm());
-        return most;
-    }
+    double farthest_from(const Points& target) const { return farthest(target, problem.contact().body()); }
 
     /// Moves the body by up to a stride toward the target and the cloth with it. Everything goes as far as what is in
     /// its own way lets it. Returns whether all went all the way.

@@ -382,13 +382,15 @@ struct Settling {
         const SettleResult r = settle_within_limits(run, problem, factor, some, run.settle_some(problem, run.x, factor, some));
         const bool fits = !beyond_limits();
         const bool better = (fits || r.end == SettleEnd::settled || missing() < (1 - tight_gain) * missed) && !find_slide(run);
-        if (!better) {
+        if (!better) { // what is reported is where it was
             run.x = before;
-            some.max_iterations = 0; // looks at where it was once more, which is what is reported
+            problem.rest_here(run.x, run.result.friction, true);
+            some.max_iterations = 0;
+            run.settle_some(problem, run.x, factor, some);
+            return;
         }
         problem.rest_here(run.x, run.result.friction, true);
-        if (!better) run.settle_some(problem, run.x, factor, some);
-        if (!better || run.stopped) return;
+        if (run.stopped) return;
         run.facts.slid_to_fit = farthest(before, run.x);
         end = settle_on(o);
         if (fits) end = settle_within_limits(run, problem, factor, o, end);
